@@ -38,9 +38,9 @@ const ways = {
         return { send: '', news, wakes_ms: null };
       },
     };
-    const port = { isRadio: true, goneBy: '', open: async () => {}, write: async () => {}, close: async () => {} };
+    const port = { isRadio: true, lossReason: '', open: async () => {}, write: async () => {}, close: async () => {} };
     const { DirectRobot } = await page.load('robot/direct.js');
-    const robot = new DirectRobot(python, port, heard, { load: () => '', keep() {} });
+    const robot = new DirectRobot(python, port, heard, { load: () => '', store() {} });
     robot.connect('tinibot', 'en');
     return { robot, asked: () => count };
   },

@@ -56,15 +56,15 @@ async function history(seed) {
   page.byId('pad_thumb').style.setProperty = (name, value) => { styles[name] = value; };
   await learns(page);
   const { pageState } = await page.load('page/page_state.js');
-  const { REMOTE } = await page.load('page/words.js');
+  const { REMOTE_DEVICES } = await page.load('page/words.js');
   const { text } = await page.load('page/texts.js');
   const { Pad } = await page.load('remote/pad.js');
   const pad = new Pad();
   pageState.sideId.set('side_virtual');
   const keyButtons = [...page.byId('pad_arrows').children, ...page.byId('pad_letters').children];
   const parts = [...keyButtons, page.byId('pad_stick')];
-  const devices = REMOTE.filter((device) => device.is_yes_no);
-  const sticks = REMOTE.filter((device) => !device.is_yes_no).map((device) => device.text);
+  const devices = REMOTE_DEVICES.filter((device) => device.is_yes_no);
+  const sticks = REMOTE_DEVICES.filter((device) => !device.is_yes_no).map((device) => device.text);
   const owners = OWNERS.map((selector) => {
     const owner = selector.startsWith('#') ? page.byId(selector.slice(1)) : document.createElement(selector.startsWith('[') ? 'div' : selector);
     if (selector.startsWith('#')) owner.id = selector.slice(1);
@@ -85,8 +85,8 @@ async function history(seed) {
   const fingers = new Map(); // those that press, each with its part, and whether it is heeded
   let pressed = new Map(), stale = new Set(), driven, count = 0, log = [];
   const isShown = (part) => {
-    if (!driven || driven.isDeaf) return false;
-    return part.dataset.key ? driven.reads.includes(part.dataset.key) : driven.reads.some((word) => sticks.includes(word));
+    if (!driven || driven.lacksRemote) return false;
+    return part.dataset.key ? driven.remoteWords.includes(part.dataset.key) : driven.remoteWords.some((word) => sticks.includes(word));
   };
   const there = () => gamepads.filter((item) => item?.connected);
   const heldByGamepad = ({ axes: [right, down], buttons }) => ({
@@ -139,19 +139,19 @@ async function history(seed) {
   const actions = {
     offers() {
       const side = random.of(['driving', 'link']);
-      const reads = random() < 0.3 ? [] : REMOTE.map((device) => device.text).filter(() => random() < 0.6);
-      const isDeaf = random() < 0.2;
-      if (random() < 0.2 && offered[side]) reads.splice(0, Infinity, ...offered[side].reads); // as before, or as it
+      const remoteWords = random() < 0.3 ? [] : REMOTE_DEVICES.map((device) => device.text).filter(() => random() < 0.6);
+      const lacksRemote = random() < 0.2;
+      if (random() < 0.2 && offered[side]) remoteWords.splice(0, Infinity, ...offered[side].remoteWords); // as before, or as it
       const number = (count += 1);
-      const robot = { number, reads, isDeaf, tell: (controls) => log.push({ ms: now(), number, ...controls }) };
+      const robot = { number, remoteWords, lacksRemote, sendControls: (controls) => log.push({ ms: now(), number, ...controls }) };
       const before = offered[side];
       pad.offerRobot(side, robot);
-      if (!before || before.isDeaf !== isDeaf || `${before.reads}` !== `${reads}`) offered[side] = robot;
+      if (!before || before.lacksRemote !== lacksRemote || `${before.remoteWords}` !== `${remoteWords}`) offered[side] = robot;
       chooses();
     },
     offersAgain() {
       const [side, robot] = random.of(Object.entries(offered)) ?? [];
-      if (robot) pad.offerRobot(side, { ...robot, tell: () => fails('the one that is as before is told') });
+      if (robot) pad.offerRobot(side, { ...robot, sendControls: () => fails('the one that is as before is told') });
     },
     takesAway() {
       const side = random.of(['driving', 'link']);
@@ -201,7 +201,7 @@ async function history(seed) {
       const code = name === ' ' || name === 'Enter' ? name : name.toLowerCase();
       if (!more.repeat && pressed.has(code)) return;
       const index = button && [' ', 'Enter'].includes(name) ? keyButtons.indexOf(button) : KEYBOARD.indexOf(name.length > 1 ? name : name.toLowerCase());
-      const isOurs = driven && !driven.isDeaf && index >= 0 && !owners.includes(target) && !Object.keys(more).some((item) => item !== 'repeat');
+      const isOurs = driven && !driven.lacksRemote && index >= 0 && !owners.includes(target) && !Object.keys(more).some((item) => item !== 'repeat');
       if (keyEvent('keydown', target, name, code, more) !== Boolean(isOurs)) fails(`the browser ${isOurs ? 'does what' : 'cannot do what'} ${name} does`);
       if (!isOurs || more.repeat) return;
       pressed.set(code, index);
@@ -255,7 +255,7 @@ async function history(seed) {
   };
   const told = () => {
     const last = log.findLast(({ number }) => number === driven?.number) ?? NOTHING;
-    const all = driven && !driven.isDeaf ? held.all : NOTHING;
+    const all = driven && !driven.lacksRemote ? held.all : NOTHING;
     if (!sameAs(last)(all)) fails(`${JSON.stringify(all)} is held, and ${JSON.stringify(last)} is told`);
     if (styles.translate !== undefined && styles.translate !== `${held.all.x * 0.75}% ${-held.all.y * 0.75}%`) fails(`the stick is seen at ${styles.translate}`);
     keyButtons.forEach((part, index) => {
@@ -272,7 +272,7 @@ async function history(seed) {
     const wrong = parts.find((part) => part.hidden === isShown(part));
     if (wrong) fails(`${wrong.dataset.key ?? 'the stick'} is seen, or is not`);
     for (const [id, group] of [['pad_arrows', keyButtons.slice(0, 4)], ['pad_letters', keyButtons.slice(4)]]) if (page.byId(id).hidden === group.some(isShown)) fails(`${id} is seen, or is not`);
-    if (page.byId('pad_said').textContent !== (driven.isDeaf ? text('pad_deaf') : '')) fails(`it says ${page.byId('pad_said').textContent}`);
+    if (page.byId('pad_said').textContent !== (driven.lacksRemote ? text('pad_deaf') : '')) fails(`it says ${page.byId('pad_said').textContent}`);
     const name = keyButtons.findIndex((part, index) => part.attributes['aria-label'] !== devices[index].labels[pageState.language.value]);
     if (name >= 0) fails(`a key is called ${keyButtons[name].attributes['aria-label']}`);
   };
@@ -297,7 +297,7 @@ async function history(seed) {
     if (looks - looksBefore > (driven && there().length ? frames + 1 : 1)) fails(`in ${frames} pictures gamepads are looked at ${looks - looksBefore} times`);
     if (log.slice(logged).some((item) => item.number !== driven?.number)) fails('one that is not driven is told');
     if (now() - begins_ms !== waits_ms) fails('time');
-    const isHeld = driven && !driven.isDeaf && !isNothing(held.all);
+    const isHeld = driven && !driven.lacksRemote && !isNothing(held.all);
     if (isHeld && now() - log.at(-1).ms >= REPEAT_MS + 1) fails('what is held is not said again');
   }
   log.forEach((item, index) => {

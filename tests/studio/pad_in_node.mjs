@@ -33,7 +33,7 @@ const key = (kind, name, more = {}) => {
   dispatchEvent(event);
 };
 const steps = {
-  offer: (side, driven) => pad.offerRobot(side, driven && { ...driven, tell: ({ keys, x, y }) => told.push([now(), side, keys, x, y]) }),
+  offer: (side, driven) => pad.offerRobot(side, driven && { ...driven, sendControls: ({ keys, x, y }) => told.push([now(), side, keys, x, y]) }),
   down: (...args) => point('pointerdown', ...args),
   move: (...args) => point('pointermove', ...args),
   up: (...args) => point('pointerup', ...args),

@@ -12,7 +12,7 @@ export const [sources, made, ...words] = process.argv.slice(2);
 const PLAYED = {
   'virtual/arena.js': ['Arena'],
   'virtual/plot.js': ['Plot'],
-  'virtual/where.js': ['RunAnnouncer', 'boutEnd', 'bumpSentence', 'starsText'],
+  'virtual/where.js': ['RunAnnouncer', 'boutEndText', 'bumpSentence', 'starsText'],
   'virtual/sounds.js': ['Sounds'],
   'world/choice.js': ['WorldChoice'],
   'world/drawing.js': ['WorldDrawing'],
@@ -20,7 +20,7 @@ const PLAYED = {
   'blocks/blocks.js': ['Blocks'],
   'robot/host.js': ['HostRobot', 'hasHost', 'fetchPorts', 'isPupil', 'isTeacher', 'post'],
   'robot/serial.js': ['hasSerial', 'choosePort', 'listKnownPorts', 'SerialPort'],
-  'robot/flash.js': ['fetchFirmwares', 'loadFirmware', 'flashBoard'],
+  'robot/flash.js': ['fetchFirmwareList', 'loadFirmware', 'flashBoard'],
   '@codemirror/view': ['Decoration', 'EditorView', 'GutterMarker', 'WidgetType', 'gutter', 'highlightActiveLine', 'keymap', 'lineNumbers'],
   pyodide: ['loadPyodide'],
   'lean-qr': ['generate', 'correction'],

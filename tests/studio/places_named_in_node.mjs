@@ -7,7 +7,7 @@ const page = freshPage();
 await learns(page);
 const { pageState } = await page.load('page/page_state.js');
 const { text } = await page.load('page/texts.js');
-const { labelAt, sayOfPlace } = await page.load('blocks/said.js');
+const { labelAt, sentenceAtPlace } = await page.load('blocks/said.js');
 const { shownName } = await page.load('writing/shows.js');
 const PARTS = ['F(1, 80)', 'X = 3', 'SHOW(X)', '// a note', '', 'END_LOOP', 'LOOP(FOREVER)', '?!', 'SI|W(1)', 'TWICE(2)', ';'];
 let count = 0;
@@ -19,17 +19,17 @@ for (let seed = 0; seed < Number(words[0]); seed += 1) {
   for (const key of ['say_fault', 'robot_held', 'task_at', 'no_breakpoint', 'repair_line']) {
     const blockKey = key.replace(/_line$|$/, '_block'), values = { what: 'what', fix: 'fix' };
     pageState.view.set('blocks');
-    const part = labelAt(program, place), said = sayOfPlace(key, blockKey, program, place, values);
+    const part = labelAt(program, place), said = sentenceAtPlace(key, blockKey, program, place, values);
     if (!part.trim()) throw new Error(`a place without a name in ${JSON.stringify(program)}`);
     if (said !== text(blockKey, { ...values, part })) throw new Error(said);
     pageState.view.set('text');
-    if (sayOfPlace(key, blockKey, program, place, values) !== text(key, { ...values, line: place.line })) throw new Error(`${key} names no line to who sees text`);
+    if (sentenceAtPlace(key, blockKey, program, place, values) !== text(key, { ...values, line: place.line })) throw new Error(`${key} names no line to who sees text`);
     count += 1;
   }
 }
 // What the robot's panel says is said anew to whoever types, touches blocks or chooses a view.
 const { Speech } = await page.load('robot/speech.js');
-const speech = new Speech(), sentenceOf = () => sayOfPlace('robot_held', 'robot_held_block', 'SI|F(1, 80)', { line: 1, column: 4 });
+const speech = new Speech(), sentenceOf = () => sentenceAtPlace('robot_held', 'robot_held_block', 'SI|F(1, 80)', { line: 1, column: 4 });
 speech.sayAnew(sentenceOf, 'robot_held');
 for (const [view, isTyped] of [['blocks', false], ['blocks', true], ['blocks', false], ['text', false], ['blocks', true], ['text', true]]) {
   pageState.view.set(view);

@@ -2,7 +2,7 @@
 
 import { mock } from 'node:test';
 
-const { Progress, watchPromise } = await import(`${process.argv[2]}/page/progress.js`);
+const { ProgressWatch, watchPromise } = await import(`${process.argv[2]}/page/progress.js`);
 
 mock.timers.enable({ apis: ['setTimeout'] });
 const settle = () => new Promise((resolve) => setImmediate(resolve));
@@ -22,7 +22,7 @@ told.push(`${await never} ${waits}`);
 const cancelSignal = AbortSignal.abort();
 told.push(await watchPromise(new Promise(() => {}), { cancelSignal }).catch((error) => error.name));
 told.push(await watchPromise(Promise.resolve('there'), {}));
-const over = new Progress({ onWait: () => { waits += 1; } });
+const over = new ProgressWatch({ onWait: () => { waits += 1; } });
 waits = 0;
 over.end();
 over.advance(); // of somebody who does not know that it is over

@@ -15,9 +15,9 @@ for (const story of JSON.parse(await text(process.stdin))) {
     const atStart = runs.newestFirst.map(({ number }) => number);
     for (let k = 0; k < count; k += 1) run.addRow([k, 'x'.repeat(length)]);
     for (let k = 0; k < pictures; k += 1) run.moments.add({ now_ms: k, events: [] });
-    run.file = 'x'.repeat(file);
-    runs.trim(); // at its end
-    return [atStart, runs.newestFirst.map(({ number }) => number), runs.size, run.size, run.moments.size];
+    run.fileText = 'x'.repeat(file);
+    runs.forgetOldest(); // at its end
+    return [atStart, runs.newestFirst.map(({ number }) => number), runs.characterCount, run.characterCount, run.moments.characterCount];
   });
   console.log(JSON.stringify(kept));
 }

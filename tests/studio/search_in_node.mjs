@@ -11,7 +11,7 @@ await (await page.load('page/texts.js')).setLanguage('en');
 (await page.load('page/page_state.js')).pageState.robotName.set('tinibot');
 (await page.load('blocks/shapes.js')).setRobot('tinibot');
 const { findItems, makeToolbox } = await page.load('blocks/toolbox.js');
-const { labelOf } = await page.load('blocks/said.js');
+const { labelOfKind } = await page.load('blocks/said.js');
 const { KINDS, wordsOnBlock } = await page.load('page/words.js');
 const USED = { names: ['SPEED'], words: [['DANCE', 1]] };
 const wordOf = ({ fields = {} }) => fields.WORD ?? '';
@@ -20,7 +20,7 @@ for (const line of readFileSync(0, 'utf-8').split('\n').filter(Boolean)) {
   console.log(JSON.stringify(findItems(JSON.parse(line), USED).map(nameOf)));
 }
 for (const item of makeToolbox('all', USED, [], []).contents.flatMap(({ contents }) => contents)) {
-  const word = wordOf(item), { text } = labelOf(item.type, word, null);
+  const word = wordOf(item), { text } = labelOfKind(item.type, word, null);
   const names = [text.replace(/[…%,.?¿()]+/g, ' ').trim(), ...KINDS[item.type].words.length ? [word] : [], ...wordsOnBlock(item.type)].filter(Boolean);
   for (const name of names) console.log(JSON.stringify([nameOf(item), name, findItems(name, USED).map(nameOf)]));
 }

@@ -239,7 +239,7 @@ const PARTS = {
       };
       let told = async () => {};
       for (let k = random.below(8); k > 0; k -= 1) {
-        random.of([() => simulator.pause(), () => simulator.goOn(), () => simulator.step(), () => simulator.pressButton(), setPoints, () => {}])();
+        random.of([() => simulator.pause(), () => simulator.resume(), () => simulator.step(), () => simulator.pressButton(), setPoints, () => {}])();
         await passes(random.below(400));
         await told();
         told = async () => {};
@@ -267,7 +267,7 @@ const PARTS = {
     await learns(page);
     const { Pupil } = await page.load('class/pupil.js');
     const { loadText } = await page.load('page/kept.js');
-    const { loadDoneLessons, storeDone } = await page.load('lesson/progress.js');
+    const { loadDoneLessons, storeDoneLesson } = await page.load('lesson/progress.js');
     const { pageState } = await page.load('page/page_state.js');
     let room = null;
     playsFetch((_, { headers, body }) => room.asked(headers['X-TiniScript-Token'], JSON.parse(body)));
@@ -282,7 +282,7 @@ const PARTS = {
       return true; // nobody is asked outside a group
     };
     const views = { join: () => {}, showMates: () => {}, isBusy: false };
-    new Pupil({ panel, work, views, keepProgram: () => true, putProgram: puts, clearProgram: () => notes.push('empty'), newestRun: async () => '' });
+    new Pupil({ panel, work, views, keepProgram: () => true, putProgram: puts, clearProgram: () => notes.push('empty'), fetchNewestRunFile: async () => '' });
     const box = page.byId('class_pupil');
     const [join, , buttons] = box.children;
     const [ask, quit, connect] = buttons.children;
@@ -372,7 +372,7 @@ const PARTS = {
       const changes = {
         writes: () => { work.text = `F(${random.below(2)})`; },
         robot: () => { work.robot = random.of(['tinibot', 'liner']); },
-        lesson: () => storeDone(`lesson${random.below(9)}`),
+        lesson: () => storeDoneLesson(`lesson${random.below(9)}`),
         ownRobot: () => pageState.ownRobot.set({ name: '', colour: random.below(2) }),
         checks: () => { [dataset['state'], dataset['image']] = [random.of(['stale', 'checked']), random.of(['', '00'])]; },
       };
@@ -508,7 +508,7 @@ const PARTS = {
             return { version: 1, changes: [], ids: [], drafts: [], pending: [], since: 0, epoch: '', told: 0, why: '', count: 0, kept: { name: 'page' } };
           },
         };
-        const programs = new Programs({ python, work, put: ({ text }) => { puts(text); shown = text; told = 'class_given'; }, makePicture() {} });
+        const programs = new Programs({ python, work, putProgram: ({ text }) => { puts(text); shown = text; told = 'class_given'; }, makePicture() {} });
         globalThis.confirm = () => {
           isLaw('while it asks');
           asked.push([...kept][0]);
@@ -522,7 +522,7 @@ const PARTS = {
           editor: { setUndoHandler() {}, extend: () => view },
           views: { isBusy: false, showMates() {}, join() {} },
           keepProgram: () => programs.storeVersion(), putProgram: (program) => programs.replaceProgram({ ...program, name: '' }),
-          clearProgram() {}, newestRun: async () => '',
+          clearProgram() {}, fetchNewestRunFile: async () => '',
         });
         const [join] = page.byId('class_pupil').children;
         for (let k = 0; !join.hidden && k < 50; k += 1) { // one may be lost
@@ -602,7 +602,7 @@ const PARTS = {
     class Blocks {
       constructor() { if (story.breaks()) throw new Broken(); }
       updateLanguage() {}
-      async pictureOfForm(form) {
+      async makeFormPicture(form) {
         most = Math.max(most, (drawing += 1));
         await later(20);
         drawing -= 1;
@@ -653,18 +653,18 @@ const PARTS = {
     let notes = [];
     const shapes = { start: { x_cm: 0, y_cm: 0 }, flags: [], rivals: [], rings: [], seconds: 0, name: 'w' };
     class Choice { shownWorld = shapes; goals = []; request = 'w'; async restoreOwn() { return true; } }
-    class Drawing { notice = ''; allow() {} forget() {} letGo() {} end() {} }
+    class Drawing { notice = ''; enable() {} reset() {} cancelDrag() {} end() {} }
     const notingClass = (name) => function made() { return noting(notes, name); };
     const beginning = (name) => function made() { // what is drawn is what came since it has begun
       let count = 0;
       return new Proxy(this, { get: (_, property) => (...args) => {
-        count = property === 'begin' ? 0 : count + 1;
+        count = property === 'begin' || property === 'clear' ? 0 : count + 1;
         notes.push([name, property, count, ...args]);
       } });
     };
     const page = freshPage({
       Arena: beginning('arena'), Plot: beginning('plot'), RunAnnouncer: notingClass('announcer'), Sounds: notingClass('sounds'),
-      starsText: String, boutEnd: String, bumpSentence: String, WorldChoice: Choice, WorldDrawing: Drawing, replaceOptions() {}, makePictureOption() {}, makeDialPicture() {},
+      starsText: String, boutEndText: String, bumpSentence: String, WorldChoice: Choice, WorldDrawing: Drawing, replaceOptions() {}, makePictureOption() {}, makeDialPicture() {},
     });
     await learns(page);
     const { pageState } = await page.load('page/page_state.js');
@@ -707,7 +707,7 @@ const PARTS = {
       },
     };
     robot = virtualRobot(chanceOf(1), true);
-    new SimulatorPanel({ python, work: { world: 'w', sound: true }, whenCompiled: async () => PROGRAM, remember() {}, pad: { offerRobot: (side, driven) => notes.push(['pad', side, driven?.reads ?? null]) } });
+    new SimulatorPanel({ python, work: { world: 'w', sound: true }, whenChecked: async () => PROGRAM, storeCurrentWork() {}, pad: { offerRobot: (side, driven) => notes.push(['pad', side, driven?.remoteWords ?? null]) } });
     await settles();
     const line = page.byId('time_at');
     const marked = [];
@@ -843,7 +843,7 @@ const PARTS = {
         mute() {
           isMuted = random() < 0.6;
           if (isMuted) silences();
-          sounds.mute(isMuted);
+          sounds.setMuted(isMuted);
         },
         touches: () => { activation.hasBeenActive = random() < 0.8; },
         device: () => { hasDevice = random() < 0.7; },
@@ -915,7 +915,7 @@ const PARTS = {
     const page = freshPage({
       hasSerial: true,
       choosePort: () => failed('port', 'port'),
-      fetchFirmwares: async () => [{ board: 'uno' }],
+      fetchFirmwareList: async () => [{ board: 'uno' }],
       loadFirmware: (which, board) => {
         notes.push([which.name ?? structuredClone(which), board, page.byId('flash_progress').value]);
         return failed('firmware', 'data');
@@ -933,7 +933,7 @@ const PARTS = {
     const { Flashing } = await page.load('robot/flashing.js');
     const speech = { say: (key) => notes.push(key), sayFailure: (failure) => notes.push(failure.reason) };
     let isFree = true;
-    new Flashing({ speech, port: () => null, isFree: () => isFree, setBusy: (isBusy) => { isFree = !isBusy; }, meet: () => failed('meet') });
+    new Flashing({ speech, getChosenPort: () => null, isFree: () => isFree, setBusy: (isBusy) => { isFree = !isBusy; }, connect: () => failed('meet') });
     return async (random, isGood) => {
       notes = [];
       const end = isGood ? 'good' : random.of(['good', 'port', 'firmware', 'flash', 'meet', 'cancel']);
@@ -1181,7 +1181,7 @@ const PARTS = {
           checking.markFailed();
           await settles();
           if (open) throw new Error('they wait for a compiler that cannot be had');
-          checking.markBeginning();
+          checking.markRetry();
         }
       }
       if (!isGood) await passes(1000); // a try that fails ends, too
@@ -1203,11 +1203,11 @@ const PARTS = {
     let run = null;
     return async (random, isGood) => {
       const [of, file] = isGood ? ['virtual', 'a run'] : random.of([['virtual', 'a run'], ['virtual', 'a run'], ['virtual', ''], ['real', ''], ['real', 'a run']]);
-      if (isGood && run?.origin.of === of && run.file) run.restart(); // it is played again
+      if (isGood && run?.origin.of === of && run.fileText) run.restart(); // it is played again
       else run = new Run({ of, text, robot: 'tinibot', program: '1' }, { ...PROGRAM, places }, null);
-      run.file = file;
+      run.fileText = file;
       run.fileRows = file ? [[5, 'READ DISTANCE 1'], [500, 'READ DISTANCE 2']] : [];
-      const isKept = run.origin.of === 'virtual' && !run.file; // what comes is what its file has
+      const isKept = run.origin.of === 'virtual' && !run.fileText; // what comes is what its file has
       const marks = [], rows = [];
       let now_ms = random.below(100), bumps = 0, parting = null, begun = [], end_ms = run.end_ms;
       const marked = (at_ms, kind) => {
@@ -1245,9 +1245,9 @@ const PARTS = {
       assertSame(run.marks, marks, 'marks');
       assertSame([run.rows, run.end_ms, run.parting], [rows, end_ms, parting], 'what its file has, its end, and where it parts');
       const known = rows.length ? rows : run.fileRows;
-      for (const at_ms of [0, 50, 600, now_ms / 2]) assertSame(run.readAt('DISTANCE', at_ms) ?? null, known.filter(([when, row]) => when <= at_ms && row.startsWith('READ')).at(-1)?.[1].split(' ').at(-1) ?? null, `read at ${at_ms}`);
-      const { moments, seconds } = run;
-      return { ends: [parting ? 'parted' : 'whole'], seen: isGood && structuredClone([moments.length, moments.events, moments.parts, moments.at(moments.length - 1).shown, moments.last_ms, seconds]) };
+      for (const at_ms of [0, 50, 600, now_ms / 2]) assertSame(run.readingAt('DISTANCE', at_ms) ?? null, known.filter(([when, row]) => when <= at_ms && row.startsWith('READ')).at(-1)?.[1].split(' ').at(-1) ?? null, `read at ${at_ms}`);
+      const { moments, duration_s } = run;
+      return { ends: [parting ? 'parted' : 'whole'], seen: isGood && structuredClone([moments.length, moments.events, moments.parts, moments.at(moments.length - 1).shown, moments.last_ms, duration_s]) };
     };
   },
 
@@ -1308,7 +1308,7 @@ const PARTS = {
       if (program.lesson && !program.text && (!isRightOn(work.robot, work.text) || isRightOn(program.robot, work.text))) wrong ||= `${inEditor()} goes from a ${program.robot}`;
       given(program);
     };
-    const lessons = new Lessons({ python, simulatorPanel: driving, put: (program) => (pageState.groupName.value ? opens(program) : given(program)), exchange: exchanges, work });
+    const lessons = new Lessons({ python, simulatorPanel: driving, putProgram: (program) => (pageState.groupName.value ? opens(program) : given(program)), exchangeProgram: exchanges, work });
     page.byId('lessons').hidden = false;
     page.byId('side_lessons').click();
     await passes(500);
@@ -1437,7 +1437,7 @@ const PARTS = {
       asking.send = async () => {
         const sent = asking.requests.splice(0);
         await later(isGood ? 5 : random.below(300));
-        for (const { id, what } of sent) if (!isOver) asking.takeNews({ id, ok: what });
+        for (const { id, what } of sent) if (!isOver) asking.handleNews({ id, ok: what });
       };
       for (let k = 0; k < 6; k += 1) {
         open += 1;
@@ -1605,7 +1605,7 @@ const PARTS = {
       Blocks: class {
         words = 'words';
         updateLanguage() { this.words = `words ${languages}`; }
-        async pictureOfForm({ text }) { await later(20); return `${text} ${this.words}`; }
+        async makeFormPicture({ text }) { await later(20); return `${text} ${this.words}`; }
       },
     });
     let languages = 0;
@@ -1896,7 +1896,7 @@ const PARTS = {
           const isOpen = stop === 'pressed';
           if (event.event === 'STARTED' && stop === 'done') stop = '';
           if (event.event !== 'STOPPED') return;
-          if (!noted('pad', 'letGo')) throw new Error('what is held is held on after a stop');
+          if (!noted('pad', 'releaseAll')) throw new Error('what is held is held on after a stop');
           if (!isOpen && stop === '' && said() !== text('stopped_MESSAGE')) throw new Error(`of a stop after a start it says ${said()}`);
           stop = 'done';
         },
@@ -1950,7 +1950,7 @@ const PARTS = {
 
   // Sensors of a real robot that are watched, and then another robot: what is seen is what it has told itself.
   async watching() {
-    const page = freshPage({ Plot: class { begin() {} add() {} draw() {} } });
+    const page = freshPage({ Plot: class { clear() {} add() {} draw() {} } });
     playsNavigator({});
     await learns(page);
     const { pageState } = await page.load('page/page_state.js');
@@ -1977,7 +1977,7 @@ const PARTS = {
         return { ok: true };
       },
       say() {},
-      tell() {},
+      onWatchingChange() {},
     });
     const seen = () => page.byId('senses').hidden || page.byId('gauges').children.map((row) => row.children[1].textContent);
     return async (random, isGood) => {
@@ -1985,7 +1985,7 @@ const PARTS = {
       robot = random.of(['tinibot', 'liner']);
       told = new Map();
       line = '';
-      watch.meet({ robot, owner: 'free', is_idle: true, is_running: false });
+      watch.onRobotChange({ robot, owner: 'free', is_idle: true, is_running: false });
       if (!wasWanted) page.byId('link_watch').click();
       wasWanted = true;
       const all = [seen()];
@@ -2003,7 +2003,7 @@ const PARTS = {
       }
       const end = told.size ? 'told' : 'silent';
       robot = null;
-      watch.meet(null);
+      watch.onRobotChange(null);
       await passes(500);
       return { ends: [end], seen: [all, line] };
     };
@@ -2044,7 +2044,7 @@ const PARTS = {
       editor: { setUndoHandler: (callback) => { undo = callback; }, extend: () => view },
       views: { isBusy: false, showMates() {}, join: (shared) => { group = shared; } },
       panel: { onGroupEvent: () => { isWitness = true; }, endWitness: () => { isWitness = false; } },
-    }, { say() {}, onBug() {}, onOthers: (all) => { others = all; } });
+    }, { onStateChange() {}, onBug() {}, onMatesChange: (all) => { others = all; } });
     let asked = []; // of the class, since the newest join or leave
     let isGone = () => false;
     playsFetch(async (_, { body }) => {
@@ -2235,8 +2235,8 @@ const PARTS = {
       const { doc: { length } } = view.state;
       view.dispatch({ changes: { from: 0, to: length }, annotations: Transaction.addToHistory.of(false) });
       const shared = new SharedEditor(python, editor, {
-        fails: (error) => { if (isBroken) heard.fails += 1; else wrong = `it fails: ${error?.stack}`; }, left: () => { heard.left += 1; }, others: (others) => { heard.others = others; }, refused: () => { heard.refused += 1; }, keep: (kept) => { heard.kept = kept; },
-        answers: (is) => { heard.answers = is; }, places: (places) => { heard.places = places; }, runs: () => { heard.runs += 1; }, isBusy: () => false,
+        onBug: (error) => { if (isBroken) heard.fails += 1; else wrong = `it fails: ${error?.stack}`; }, onLeft: () => { heard.left += 1; }, onMatesChange: (others) => { heard.others = others; }, onRefusal: () => { heard.refused += 1; }, storePage: (kept) => { heard.kept = kept; },
+        onRequestEnd: (is) => { heard.answers = is; }, onMatesMove: (places) => { heard.places = places; }, onRobotEvent: () => { heard.runs += 1; }, isBusy: () => false,
       });
       let hasBegun = false;
       shared.showProgram({}, null).then(() => { hasBegun = true; });
@@ -2314,7 +2314,7 @@ const PARTS = {
       assertSame(lines, room.lines.map(({ text }) => text), 'the program');
       for (const name of [...mine, ...theirs]) if (lines.filter((line) => line === name).length !== 1) throw new Error(`${name} is ${lines.filter((line) => line === name).length} times in ${lines}`);
       const mates = room.others.map(({ at, name, writes: isWriting }) => [room.lines.findIndex(({ id }) => id === at) + 1, isWriting ? `${name} …` : name]).filter(([line]) => line);
-      assertSame(heard.places.map(({ line, said }) => [line, said]), [...mates, ...known.drafts.map((item) => [item, textFor('group_draft')])], 'where the others are, and what no other page has');
+      assertSame(heard.places.map(({ line, label }) => [line, label]), [...mates, ...known.drafts.map((item) => [item, textFor('group_draft')])], 'where the others are, and what no other page has');
       assertSame(heard.others, room.others, 'who is here');
       const line = place.line || view.state.doc.lineAt(view.state.selection.main.head).number;
       if (room.lines[line - 1]) assertSame(room.caret, { at: room.lines[line - 1].id, writes: place.line ? place.writes : false }, 'where this page is');
@@ -2344,8 +2344,8 @@ const PARTS = {
   // answer at once, again and again.
   async news() {
     const page = freshPage();
-    const { HeardNews } = await page.load('class/heard.js');
-    const heard = new HeardNews();
+    const { NewsCursor } = await page.load('class/news_cursor.js');
+    const heard = new NewsCursor();
     let classes = 0;
     return async (random, isGood) => {
       const key = `class ${(classes += 1)}`;
@@ -2494,7 +2494,7 @@ const PARTS = {
     const page = freshPage({
       ...REAL_SIDE,
       Plot: class {
-        begin() { plotted = []; }
+        clear() { plotted = []; }
         add(at_ms, values) { plotted.push([Math.round(at_ms), ...values.map(({ value }) => value)]); }
         draw() {}
       },
@@ -2923,15 +2923,15 @@ const PARTS = {
       start: { x_cm: 30, y_cm: 30, heading: 0 }, walls: [], boxes: [], lines: [], lamps: [], flags: [], rings: [], rivals: [],
     });
     let world = empty('w0');
-    const choice = { isOwn: false, write: async () => ({ text: 'w' }), keepOwn: async () => true };
+    const choice = { isOwn: false, write: async () => ({ text: 'w' }), storeOwn: async () => true };
     const drawing = new WorldDrawing({ ask: async () => ({ world: empty('opened') }) }, noting([], 'arena'), {
-      world: () => world, worldChoice: choice, robot: () => [0, 0], isDriving: () => false, switchOff() {}, preview() {}, tell() {},
-      put(changed) {
+      getWorld: () => world, worldChoice: choice, getRobotPlace: () => [0, 0], isDriving: () => false, switchOff() {}, previewWorld() {}, refresh() {},
+      putWorld(changed) {
         world = changed;
         choice.isOwn = true;
       },
     });
-    drawing.allow();
+    drawing.enable();
     page.byId('world_draw').click();
     const presses = (id, detail = 1) => page.byId(`world_${id}`).dispatchEvent(Object.assign(new Event('click'), { detail }));
     const types = (key) => page.byId('arena').dispatchEvent(Object.assign(new Event('keydown'), { key, preventDefault() {} }));
@@ -2951,7 +2951,7 @@ const PARTS = {
       enters() {
         world = empty(`w${(worlds += 1)}`);
         choice.isOwn = false;
-        drawing.forget();
+        drawing.reset();
       },
       async opens() {
         choosesFile(page.byId('world_file'), new File(['w'], 'w.toml'));
@@ -3002,7 +3002,7 @@ const PARTS = {
       await later(delay());
       return { text: lineOf(new TextDecoder().decode(bytes)) };
     };
-    const programs = new Programs({ python: { ask }, work, put: (program) => Object.assign(work, program), makePicture() {} });
+    const programs = new Programs({ python: { ask }, work, putProgram: (program) => Object.assign(work, program), makePicture() {} });
     let count = 0;
     let now_ms = 1e12;
     Date.now = () => (now_ms += 1);
@@ -3177,7 +3177,7 @@ const PARTS = {
     canvas.getContext = () => pen;
     const plot = new Plot(canvas);
     return async (random, isGood) => {
-      plot.begin();
+      plot.clear();
       const count = random.of([3, 100, 1999, 2001, 9000]);
       for (let k = 0; k < count; k += 1) plot.add(20 * k, [{ name: random.of(['X', 'Y']), value: random.below(100) }]);
       drawn.length = 0;
@@ -3223,7 +3223,7 @@ const PARTS = {
       stop() {},
     };
     page.byId('lesson_end').hidden = true;
-    new Lessons({ python, simulatorPanel: driving, put() {}, work: { text: '', robot: '', name: '', lesson: '', own: null } });
+    new Lessons({ python, simulatorPanel: driving, putProgram() {}, work: { text: '', robot: '', name: '', lesson: '', own: null } });
     page.byId('lessons').hidden = false;
     const choice = page.byId('lesson');
     const opens = () => {
@@ -3317,9 +3317,9 @@ const PARTS = {
         if (isLost || by !== info) return null; // also of a robot that is gone
         return action === 'variables' ? { variables: [7] } : action === 'tasks' ? { tasks: [['RUNNING', 0], ['WAITING', 20]] } : { ok: true };
       },
-      uploadPaused: () => actions.uploads(null, true), say() {}, sayAnew() {}, canGetHalting: async () => false, getHalting() {},
-      place: { hold: () => {}, goOn: () => {} },
-      recorder: { halt: () => { clock = 1; }, goOn: () => { clock = 0; } },
+      uploadPaused: () => actions.uploads(null, true), say() {}, sayAnew() {}, canGetHaltingFirmware: async () => false, getHaltingFirmware() {},
+      place: { halt: () => {}, resume: () => {} },
+      recorder: { halt: () => { clock = 1; }, resume: () => { clock = 0; } },
     });
     let program = null, isRunning = false, isStepping = false;
     const tells = (event) => debugging.onEvent(event);
@@ -3333,7 +3333,7 @@ const PARTS = {
         info = random() < 0.9 ? { has_breakpoints: random() < 0.8, is_running: random() < 0.2 } : null;
         [program, known, newest] = [null, '', null];
         over(info?.is_running ?? false);
-        debugging.meet(info);
+        debugging.onRobotChange(info);
       },
       uploads(random, paused = random() < 0.3) {
         if (!info || isRunning) return;
@@ -3362,7 +3362,7 @@ const PARTS = {
       },
       line() {
         if (known) known = 'none'; // what it halts at is gone
-        debugging.onLine();
+        debugging.onLineSent();
       },
       breaks(random) {
         const lines = places.filter(() => random() < 0.3).map(([, line]) => line);
@@ -3430,7 +3430,7 @@ const PARTS = {
     const runs = new Runs();
     let trims = 0;
     page.byId('record_play').hidden = true; // as in index.html
-    const recorder = new Recorder({ runs: { addRun: (run) => runs.addRun(run), trim: () => { trims += 1; runs.trim(); } }, play() {} });
+    const recorder = new Recorder({ runs: { addRun: (run) => runs.addRun(run), forgetOldest: () => { trims += 1; runs.forgetOldest(); } }, play() {} });
     let sent = []; // the programs that robots have from here, the newest last
     const sends = (name, isSensing) => {
       const text = `// ${name}${isSensing ? ' DISTANCE' : ''}`;
@@ -3480,7 +3480,7 @@ const PARTS = {
       sends: (random) => sends(`p${random.below(30)}`, random() < 0.5),
       meets(random) {
         lacks = random() < 0.5;
-        recorder.meet({ has_readings: !lacks });
+        recorder.onRobotChange({ has_readings: !lacks });
       },
       ours(random) {
         const { name } = random.of(sent), ms = random() < 0.2 ? random.below(50) : undefined;
@@ -3534,7 +3534,7 @@ const PARTS = {
       },
       goesOn() {
         goesOn();
-        recorder.goOn();
+        recorder.resume();
       },
       lasts: (random) => passes(random.of([1000, 700_000])),
     };
@@ -3559,9 +3559,9 @@ const PARTS = {
         const run = runs.newestFirst[0];
         assertSame(run.rows, own, 'its rows');
         assertSame([run.origin.text, run.origin.is_by_button, run.end_ms], [ran.text, byButton, end_ms], 'of which program, and until when');
-        assertSame(run.clock(), Math.min(MOST_MS, elapsed()), 'its clock');
+        assertSame(run.readClock(), Math.min(MOST_MS, elapsed()), 'its clock');
         const older = runs.newestFirst[1];
-        if (older) assertSame(older.clock(), Math.min(MOST_MS, older.rows.at(-1)?.[0] ?? 0), 'the clock of the one before');
+        if (older) assertSame(older.readClock(), Math.min(MOST_MS, older.rows.at(-1)?.[0] ?? 0), 'the clock of the one before');
         const notice = unread ? textOf('record_incomplete', { sensors: 'DISTANCE' }) : lacks && ran.text.includes('DISTANCE') ? textOf('record_no_readings') : '';
         const place = page.byId('record_lacks');
         if (['meets', 'ours', 'waits'].includes(end)) isTold = end !== 'meets'; // what a robot that is met tells is of the next run
@@ -3578,7 +3578,7 @@ const PARTS = {
     const { GivingWindow } = await page.load('class/giving.js');
     const given = [];
     const giving = new GivingWindow((key, pupil) => given.push([key, pupil]));
-    const list = giving.window.children[1].children[1];
+    const list = giving.dialog.children[1].children[1];
     let works = 0;
     return async (random, isGood) => {
       given.length = 0;
@@ -3609,7 +3609,7 @@ const PARTS = {
           }
         });
       }
-      const windows = [giving.window.open];
+      const windows = [giving.dialog.open];
       giving.show([], here);
       return { ends: [...ends], seen: isGood && [given.map(([, number]) => number), windows, list.children.length] };
     };
@@ -3714,7 +3714,7 @@ const PARTS = {
     let wasLeft = false; // and opened after that
     const port = (own) => ({
       isRadio: true,
-      goneBy: 'port_gone',
+      lossReason: 'port_gone',
       async open(_, gone) {
         wasLeft ||= own.robot.isOver;
         if (state !== 'closed') throw new ConnectionFailure('port_busy');
@@ -3797,7 +3797,7 @@ const PARTS = {
       breaks = () => false;
       [given, bytes] = [[], []];
       let hears = () => {};
-      const port = { isRadio: true, goneBy: 'port_gone', async open(onData) { hears = onData; }, async write() {}, async close() {} };
+      const port = { isRadio: true, lossReason: 'port_gone', async open(onData) { hears = onData; }, async write() {}, async close() {} };
       const robot = new DirectRobot(python, port, { onEvent() {}, onEnd() {} }, NO_KEYS);
       robot.connect('tinibot', 'en').catch(() => {});
       await passes(1000);
@@ -4032,7 +4032,7 @@ const PARTS = {
     const page = freshPage({
       replaceOptions() {}, makePictureOption() {}, makeDialPicture() {}, makeBlocksPicture() {},
       Blocks: class {
-        isBusy = false;
+        isDragging = false;
         focusedLine = 1;
         has = {};
         stands = 'L0';
@@ -4046,11 +4046,11 @@ const PARTS = {
         set layoutText(layout) { this.next = layout; }
         get lines() { return this.form.body.map((_, line) => [`${line}`, line]); }
         readForm() {
-          if (this.isBusy) fails('blocks are read while one is in a hand');
+          if (this.isDragging) fails('blocks are read while one is in a hand');
           return { form: structuredClone(this.form), ids: [] };
         }
         show(form) {
-          if (this.isBusy) fails('a block is taken out of a hand');
+          if (this.isDragging) fails('a block is taken out of a hand');
           if (textOf(form) !== textOf(formOf(editor.text))) fails('blocks are made of an older text');
           if (form.body.some(({ kind }) => kind === 'grey') && editor.hasFocus && now() - asked_ms > 2500) fails('blocks are made of what somebody is typing');
           this.form = structuredClone(form);
@@ -4080,7 +4080,7 @@ const PARTS = {
           if (group) this.shown = textOf(formOf(editor.text));
         }
         showFault(range, sentence) { this.has.fault = JSON.stringify([range, sentence]); }
-        setLevel() {} setRobot() {} setTaught() {} setGivenBlocks() {} updateLanguage() {} resize() {} beginProgram() {}
+        setLevel() {} setRobot() {} setTaughtBlocks() {} setGivenBlocks() {} updateLanguage() {} resize() {} beginProgram() {}
       },
     });
     let isTyped = false; // since blocks were shown
@@ -4112,7 +4112,7 @@ const PARTS = {
         editor.put(text);
       },
       undo() {
-        if (blocks.isBusy) fails('undo comes while a block is in a hand');
+        if (blocks.isDragging) fails('undo comes while a block is in a hand');
         if (hasTouched && !isTyped && !hasFailed) fails('undo comes before what was done to blocks');
         const [text, before, after] = past.pop() ?? [editor.text, '', ''];
         editor.put(text);
@@ -4173,7 +4173,7 @@ const PARTS = {
       settle: () => later(delay()),
       chooseLine() { if (group !== this) fails('a group that was left hears where somebody is'); },
     });
-    const views = new Views({ python, editor, work, remember() {}, tryAlone() {}, playTone() {} });
+    const views = new Views({ python, editor, work, storeCurrentWork() {}, tryAlone() {}, playTone() {} });
     const pane = page.byId('blocks');
     views.markReady();
     views.wake();
@@ -4197,10 +4197,10 @@ const PARTS = {
         pane.dispatchEvent(pressed);
         if (pressed.isStopped) return; // it is a moment too early
         for (let more = true; more; more = random() < 0.3) { // and takes the next one at once
-          blocks.isBusy = true;
+          blocks.isDragging = true;
           if (!group && random() < 0.2) presses('undo');
           await passes(random.below(random.of([2, 120])));
-          blocks.isBusy = false;
+          blocks.isDragging = false;
           const isNew = random() < 0.7, line = isNew ? `b${(count += 1)}` : blocks.form.body.pop()?.text;
           hasFailed = false;
           if (!isNew) mine = mine.filter((item) => item !== line);
@@ -4543,7 +4543,7 @@ const PARTS = {
           const def = workspace().getBlocksByType('def')[0];
           if (!def) return;
           const before = changes;
-          random.of([() => def.addOne(), () => def.removeOne(), () => def.names().length && def.setFieldValue(`Z${random.below(99)}`, 'P0')])();
+          random.of([() => def.addValue(), () => def.removeValue(), () => def.names().length && def.setFieldValue(`Z${random.below(99)}`, 'P0')])();
           await passes(100);
           const calls = workspace().getBlocksByType('call');
           for (const call of calls) {
@@ -4746,7 +4746,7 @@ const PARTS = {
     let camera = '', stops = 0, isOver = false; // the mouse the program
     document.querySelector = (selector) => (isOver && selector === '#writing:hover' ? writing : null);
     page.byId('runs_open').parent = new (page.byId('runs_open').constructor)();
-    const stage = new Stage({ look: (from) => { camera = from; }, stop: () => { stops += 1; } });
+    const stage = new Stage({ setCamera: (from) => { camera = from; }, stop: () => { stops += 1; } });
     const [cameraButton, fullButton] = page.byId('runs_open').parent.children;
     const [writing, lessons] = ['writing', 'lessons'].map(page.byId);
     const has = { full: false, big: false, held: false, whole: false, turns: 0 };
@@ -4763,7 +4763,7 @@ const PARTS = {
           root.dataset['phase'] = 'ended';
           isOver = random() < 0.5;
           moves();
-          stage.runEnded();
+          stage.onRunEnd();
           await passes(250);
           if (isOver || pageState.sideId.value === 'side_lessons') has.big = false; // its text is read again
           isOver = false;
@@ -5008,11 +5008,11 @@ const PARTS = {
   async presses() {
     const shapes = { start: { x_cm: 0, y_cm: 0 }, flags: [], rivals: [], rings: [], seconds: 0, name: 'w' };
     class Choice { shownWorld = shapes; goals = []; request = 'w'; async restoreOwn() { return true; } }
-    class Drawing { notice = ''; allow() {} forget() {} letGo() {} end() {} }
+    class Drawing { notice = ''; enable() {} reset() {} cancelDrag() {} end() {} }
     const notingClass = (name) => function made() { return noting([], name); };
     const page = freshPage({
       Arena: notingClass('arena'), Plot: notingClass('plot'), RunAnnouncer: notingClass('announcer'), Sounds: notingClass('sounds'),
-      starsText: String, boutEnd: String, bumpSentence: String, WorldChoice: Choice, WorldDrawing: Drawing, replaceOptions() {}, makePictureOption() {}, makeDialPicture() {},
+      starsText: String, boutEndText: String, bumpSentence: String, WorldChoice: Choice, WorldDrawing: Drawing, replaceOptions() {}, makePictureOption() {}, makeDialPicture() {},
     });
     await learns(page);
     const { pageState } = await page.load('page/page_state.js');
@@ -5038,14 +5038,14 @@ const PARTS = {
         return worker;
       },
     };
-    const whenCompiled = async () => {
+    const whenChecked = async () => {
       await later(delay());
       pageState.checkResult.set(program);
       return program;
     };
     robot = virtualRobot(chanceOf(1), true);
     page.byId('arena').checkVisibility = () => true;
-    const panel = new SimulatorPanel({ python, work: { world: 'w', sound: true }, whenCompiled, remember() {}, pad: { offerRobot() {} } });
+    const panel = new SimulatorPanel({ python, work: { world: 'w', sound: true }, whenChecked, storeCurrentWork() {}, pad: { offerRobot() {} } });
     await settles();
     const { dataset } = document.documentElement;
     let lastPlace = '', driven_ms = 0; // the place of STOP stays for a while, however a run has ended
@@ -5124,7 +5124,7 @@ const PARTS = {
 };
 
 /** A browser in which nobody has the key of a robot. */
-const NO_KEYS = { load: () => '', keep() {} };
+const NO_KEYS = { load: () => '', store() {} };
 
 /** What the side with a real robot imports, where a part plays the robot. */
 const REAL_SIDE = {

@@ -74,7 +74,7 @@ const PARTS = {
         tells('run', world);
         await beginning.run;
       },
-      seeProgram: () => tells('see'), showSide: (id) => tells('side', id), leaveProgram: () => tells('leave'),
+      onProgramShown: () => tells('see'), showSide: (id) => tells('side', id), leaveProgram: () => tells('leave'),
     });
     is(told.splice(0), screen === 'program' ? [['see']] : [], 'told at first');
     const goes = (to) => {
@@ -140,7 +140,7 @@ const PARTS = {
       },
       stars() {
         const names = [...Object.keys(STARS.lessons).slice(-3), 'gone']; // a lesson that is no more counts nothing
-        if (random() < 0.5) progress.storeDone(random.of(names));
+        if (random() < 0.5) progress.storeDoneLesson(random.of(names));
         else progress.storeStars(random.of([...names, ...Object.keys(STARS.worlds).map(progress.starsKeyOfWorld)]), 1 + random.below(9));
         pageState.language.set(pageState.language.value);
       },
@@ -182,7 +182,7 @@ const PARTS = {
   async versions(random) {
     const page = freshPage();
     await learns(page);
-    const { deleteVersion, loadVersions, restoreVersion, sameProgramAs, storeVersion } = await page.load('programs/versions.js');
+    const { deleteVersion, loadVersions, restoreVersion, isSameProgramAs, storeVersion } = await page.load('programs/versions.js');
     const KEY = 'tiniscript.versions';
     let model = [], at_ms = 1e12, deleted = [];
     const same = (one, other) => one.robot === other.robot && one.text.replace(/\s/g, '') === other.text.replace(/\s/g, '');
@@ -219,7 +219,7 @@ const PARTS = {
     const checks = () => {
       const versions = loadVersions();
       is(versions, model, 'the programs');
-      for (const [k, version] of versions.entries()) if (versions.slice(k + 1).some(sameProgramAs(version))) throw new Fails(`${version.text} is there twice`);
+      for (const [k, version] of versions.entries()) if (versions.slice(k + 1).some(isSameProgramAs(version))) throw new Fails(`${version.text} is there twice`);
     };
     return { acts: actions, checks };
   },
@@ -231,16 +231,16 @@ const PARTS = {
     await learns(page);
     const { pageState } = await page.load('page/page_state.js');
     const { text } = await page.load('page/texts.js');
-    const { showOwnRobot, ownRobotOf, COLOURS } = await page.load('page/own_robot.js');
-    const { OwnWindow } = await page.load('start/own_window.js');
+    const { showOwnRobot, validOwnRobot, COLOURS } = await page.load('page/own_robot.js');
+    const { OwnRobotWindow } = await page.load('start/own_window.js');
     showOwnRobot();
-    new OwnWindow();
+    new OwnRobotWindow();
     const dialog = document.querySelectorAll('dialog').find(({ id }) => id === 'own');
     const nameInput = dialog.querySelectorAll('input').find(({ type }) => type !== 'radio');
     const radios = dialog.querySelectorAll('input').filter(({ type }) => type === 'radio');
     let own = { name: '', colour: 0 }, kept = true, isKept = true;
     const stores = (changed) => {
-      own = ownRobotOf({ ...own, ...changed });
+      own = validOwnRobot({ ...own, ...changed });
       isKept = window.localStorage.room > 0;
       if (!isKept) is(pageState.note.value, text('not_kept'), 'said of what is not kept');
       else kept = JSON.stringify(own);
@@ -338,7 +338,7 @@ const PARTS = {
   async stop(random) {
     playsNavigator({});
     const page = freshPage({}, HTML);
-    const { needStop } = await page.load('page/stop_place.js');
+    const { setStopNeeded } = await page.load('page/stop_place.js');
     const COMES_MS = 500, STAYS_MS = 1500;
     const needs = Object.fromEntries(['run', 'link'].map((name) => [name, { isNeeded: false, isThere: false, since_ms: 0 }]));
     const looks = () => {
@@ -348,7 +348,7 @@ const PARTS = {
     };
     const sets = (name, isNeeded) => {
       if (isNeeded !== needs[name].isNeeded) Object.assign(needs[name], { isNeeded, since_ms: now() });
-      needStop(name, isNeeded);
+      setStopNeeded(name, isNeeded);
     };
     const actions = {
       begins: () => sets('run', true),
@@ -420,8 +420,8 @@ const PARTS = {
           } else for (let k = random.of([0, 1, 2, 30, 30, 30]); k > 0; k -= 1) adds(random() < 0.5);
         }
         at_ms = null;
-        if (run) line.begin(run);
-        else line.begin();
+        if (run) line.setRun(run);
+        else line.setRun();
         isShown = true;
         isDrawn = seen().moments.length > 1 && size[0] > 0;
       },
@@ -440,7 +440,7 @@ const PARTS = {
       },
       leaves() {
         at_ms = null;
-        line.leave();
+        line.returnToNewest();
         isShown = false;
       },
       moves() {
@@ -477,10 +477,10 @@ const PARTS = {
       is(looks, wantedLooks, 'times that somebody looked back');
       is(line.run === seen() || !run, true, 'the run that is seen');
       const { moments, marks } = seen();
-      is(line.seenState, at_ms === null ? null : moments.at(momentOf()), 'the state');
+      is(line.pastState, at_ms === null ? null : moments.at(momentOf()), 'the state');
       const { shown = [] } = moments.at(momentOf());
-      is([...new Map(line.shown.map((event) => [event[2], event])).values()].map(([ms]) => ms).sort(), shown.map(([ms]) => ms).sort(), 'what is shown');
-      if (line.shown.length) is(line.shown.at(-1)[0], Math.max(...shown.map(([ms]) => ms)), 'the newest of what is shown');
+      is([...new Map(line.shownEvents.map((event) => [event[2], event])).values()].map(([ms]) => ms).sort(), shown.map(([ms]) => ms).sort(), 'what is shown');
+      if (line.shownEvents.length) is(line.shownEvents.at(-1)[0], Math.max(...shown.map(([ms]) => ms)), 'the newest of what is shown');
       if (isShown) {
         const last = moments.at(momentOf());
         is([slider.disabled, slider.min, slider.max, slider.value], moments.length < 2 ? [true, '0', '0', '0'] : [false, String(moments.first_ms), String(moments.last_ms), String(last.now_ms)], 'the line');
@@ -516,14 +516,14 @@ const PARTS = {
     };
     URL.createObjectURL = (blob) => blob.text().then((content) => saved.push(content)) && 'blob:';
     URL.revokeObjectURL = () => {};
-    const runsWindow = new RunsWindow({ python, runs, show: (run) => told.push(['show', run.number]), play: (opened, known) => told.push(['play', opened.file, opened.text, known?.number]) });
+    const runsWindow = new RunsWindow({ python, runs, show: (run) => told.push(['show', run.number]), play: (opened, known) => told.push(['play', opened.fileText, opened.text, known?.number]) });
     let notice = '', note = '', kept = [];
     const REFUSALS = Object.keys(TEXTS).filter((key) => key.startsWith('record_'));
     const refuses = (name, error) => {
       if (dialog.open) notice = error;
       else note = text('not_opened', { name, why: error });
     };
-    const titleOf = (run) => text(run.origin.of === 'real' ? 'run_real' : 'run_virtual', { number: run.number, seconds: run.seconds.toFixed(1) });
+    const titleOf = (run) => text(run.origin.of === 'real' ? 'run_real' : 'run_virtual', { number: run.number, seconds: run.duration_s.toFixed(1) });
     const fileOf = (content, isReadable = true) => ({ name: random.of(['a.tsr', 'B.TSR']), slice: () => ({ arrayBuffer: async () => {
       if (!isReadable) throw new Error('gone');
       return new TextEncoder().encode(content).buffer;
@@ -551,9 +551,9 @@ const PARTS = {
         runs.addRun(run);
         for (let k = random.below(4); k > 0; k -= 1) run.addRow([1000 * k, 'BUTTON 1']);
         run.isJudged = random() < 0.2;
-        if (random() < 0.2) run.file = `opened ${run.number}`;
+        if (random() < 0.2) run.fileText = `opened ${run.number}`;
         run.end_ms = random.of([null, 3000]);
-        run.clock = random.of([null, () => 4000]);
+        run.readClock = random.of([null, () => 4000]);
       },
       opens() {
         press(page.byId('runs_open'));
@@ -584,9 +584,9 @@ const PARTS = {
         };
         press(button);
         await passes(50);
-        if (run.file) is([asked, saved], [[], [run.file]], 'what is saved of one that was opened');
+        if (run.fileText) is([asked, saved], [[], [run.fileText]], 'what is saved of one that was opened');
         else {
-          is(asked, [['write_run', run.end_ms ?? run.clock?.() ?? run.rows.at(-1)?.[0] ?? 0, run.origin.text, undefined]], 'what is asked for');
+          is(asked, [['write_run', run.end_ms ?? run.readClock?.() ?? run.rows.at(-1)?.[0] ?? 0, run.origin.text, undefined]], 'what is asked for');
           is(saved, isBroken ? [] : [`file of ${run.number}`], 'what is saved');
           if (isBroken) notice = bugSentence(error);
         }
@@ -622,7 +622,7 @@ const PARTS = {
       is(dialog.open, isOpen, 'whether the window is open');
       if (isOpen) {
         is(said.textContent, notice, 'what is said');
-        is(list.children.map((row) => [saidOf(row.querySelectorAll('button')[0]), row.querySelectorAll('button')[1].disabled]), kept.map((run) => [titleOf(run), run.isJudged || !(run.file || run.rows.length)]), 'the list');
+        is(list.children.map((row) => [saidOf(row.querySelectorAll('button')[0]), row.querySelectorAll('button')[1].disabled]), kept.map((run) => [titleOf(run), run.isJudged || !(run.fileText || run.rows.length)]), 'the list');
       }
       is(pageState.note.value, note, 'the note');
       pageState.note.set('');
@@ -696,7 +696,7 @@ const PARTS = {
         return { count: keys.length, keys: [...new Set([...listOf(kept), ...keys])].join() };
       },
     };
-    new RobotPanel({ python, goTo() {}, recorder: new Recorder({ runs: new Runs(), play() {} }), place: new RunningPlace(), pad: { letGo() {}, offerRobot() {} } });
+    new RobotPanel({ python, goTo() {}, recorder: new Recorder({ runs: new Runs(), play() {} }), place: new RunningPlace(), pad: { releaseAll() {}, offerRobot() {} } });
     await passes(50);
     const wanted = new Set();
     let count = 0;
@@ -791,19 +791,19 @@ const PARTS = {
   async camera(random) {
     const matches = { matches: false };
     globalThis.matchMedia = () => matches;
-    const { middleOf } = await freshPage({}, HTML).load('virtual/arena.js');
+    const { viewCenterOf } = await freshPage({}, HTML).load('virtual/arena.js');
     const isSeen = (place, middle, size) => Math.abs(place - middle) <= size / 2 + 1e-9;
     const actions = {
       looks() {
         const size = 20 + random.below(200), robotLength = 1 + random.below(size / 3), robot = random.below(300), goal = random.below(300);
-        const middle = middleOf(robot, [goal], size, robotLength);
+        const middle = viewCenterOf(robot, [goal], size, robotLength);
         is(isSeen(robot, middle, size - 2 * robotLength), true, 'the robot is seen whole');
         if (Math.abs(goal - robot) <= size - 2 * robotLength) is(isSeen(goal, middle, size), true, 'where its task leads is seen');
         is(Math.abs(goal - middle) <= Math.abs(goal - robot), true, 'the goal is no farther from the middle than from the robot');
       },
       wanders() {
         const robot = random.below(300);
-        is(middleOf(robot, [], 100, 10), robot, 'without a task the robot is in the middle');
+        is(viewCenterOf(robot, [], 100, 10), robot, 'without a task the robot is in the middle');
       },
     };
     return { acts: actions, checks() {} };
@@ -1086,7 +1086,7 @@ const PARTS = {
         chooses(OWN);
       },
       keeps() {
-        choice.keepOwn();
+        choice.storeOwn();
         isKept = true;
         if (newest) isDamaged = false; // else what is damaged stays
       },

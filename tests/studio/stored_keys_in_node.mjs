@@ -33,7 +33,7 @@ for (let seed = 0; seed < Number(words[0]); seed += 1) {
     },
   };
   const port = {
-    isRadio: true, goneBy: 'port_gone', async open() {}, async close() {},
+    isRadio: true, lossReason: 'port_gone', async open() {}, async close() {},
     async write(data) {
       if (data.length === 1) { // no zeros, which stop it
         const key = data[0].toString(16);
@@ -44,7 +44,7 @@ for (let seed = 0; seed < Number(words[0]); seed += 1) {
       if (random() < 0.02) throw new Error('it is gone');
     },
   };
-  const keyStore = { load: () => stored.join(), keep(keys) { stored = keys.split(','); } };
+  const keyStore = { load: () => stored.join(), store(keys) { stored = keys.split(','); } };
   const robot = new DirectRobot(python, port, { onEvent() {}, onEnd() {} }, keyStore);
   robot.connect('tinibot', 'en').catch(() => {});
   for (let k = 0; k < 40; k += 1) {

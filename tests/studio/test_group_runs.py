@@ -91,7 +91,7 @@ class Robot:
 
 
 class Page:
-    """A page that looks now and then, as `heard.js` has it."""
+    """A page that looks now and then, as `news_cursor.js` has it."""
 
     def __init__(self, runs: GroupRuns, name: str) -> None:
         self.runs, self.name = runs, name

@@ -22,7 +22,7 @@ SCRIPT = Path(__file__).with_name("pad_in_node.mjs")
 HISTORIES_SCRIPT = Path(__file__).with_name("pad_histories_in_node.mjs")
 HISTORIES = 40
 ALL_READINGS = ["KEY_UP", "KEY_DOWN", "KEY_LEFT", "KEY_RIGHT", "KEY_A", "KEY_B", "PAD_X", "PAD_Y"]
-DRIVING_OFFER: Any = ["offer", "driving", {"reads": ALL_READINGS}]
+DRIVING_OFFER: Any = ["offer", "driving", {"remoteWords": ALL_READINGS}]
 UP_KEY, A_KEY = 1, 16
 NO_KEYS = [0, 0, 0]
 
@@ -74,7 +74,7 @@ def test_keyboard_keys_are_keys_and_arrows_move_a_lone_stick(page_data: Path) ->
     assert sent_to_robot(page_data, DRIVING_OFFER, *key_events) == [
         [0, UP_KEY, 0, 0], [0, UP_KEY | A_KEY, 0, 0], [0, A_KEY, 0, 0], [0, *NO_KEYS],
     ]  # fmt: skip
-    stick = ["offer", "driving", {"reads": ["PAD_Y", "KEY_A"]}]
+    stick = ["offer", "driving", {"remoteWords": ["PAD_Y", "KEY_A"]}]
     assert sent_to_robot(page_data, stick, *key_events) == [
         [0, 0, 0, 100], [0, A_KEY, 0, 100], [0, A_KEY, 0, 0], [0, *NO_KEYS],
     ]  # fmt: skip
@@ -153,17 +153,18 @@ def test_a_gamepad_holds_until_it_is_unplugged(page_data: Path) -> None:
 
 def test_only_controls_that_the_program_reads_are_shown(page_data: Path) -> None:
     for readings in (ALL_READINGS, ["KEY_A"], ["PAD_X"], ["KEY_LEFT", "PAD_Y"], []):
-        offer = ["offer", "driving", {"reads": readings}]
+        offer = ["offer", "driving", {"remoteWords": readings}]
         parts = [reading for reading in readings if reading.startswith("KEY")]
         stick = ["stick"] if any(reading.startswith("PAD") for reading in readings) else []
         assert play_story(page_data, offer)["shown"] == parts + stick
     assert play_story(page_data, DRIVING_OFFER, ["offer", "driving", None])["shown"] == []
-    hidden_offer = ["offer", "link", {"reads": ALL_READINGS}]  # differs from the visible offer
+    # It differs from the visible offer.
+    hidden_offer = ["offer", "link", {"remoteWords": ALL_READINGS}]
     assert play_story(page_data, hidden_offer)["shown"] == []
 
 
 def test_a_robot_without_a_remote_control_gets_no_key_messages(page_data: Path) -> None:
-    deaf = ["offer", "link", {"reads": ALL_READINGS, "isDeaf": True}]
+    deaf = ["offer", "link", {"remoteWords": ALL_READINGS, "lacksRemote": True}]
     outcome = play_story(
         page_data, ["side", "side_real"], deaf, ["keydown", "ArrowUp"], ["passes", 500], ["stop"],
         ["gamepads", [[0, -1], [0]]], ["event", "gamepadconnected"], ["passes", 500],
@@ -176,7 +177,7 @@ def test_a_newly_shown_robot_gets_only_later_presses(
     page_data: Path,
 ) -> None:
     """The one before hears that all is let go."""
-    link_offer = ["offer", "link", {"reads": ALL_READINGS}]
+    link_offer = ["offer", "link", {"remoteWords": ALL_READINGS}]
     outcome = play_story(
         page_data, DRIVING_OFFER, link_offer, ["down", "KEY_UP", 1], ["passes", 10],
         ["side", "side_real"],

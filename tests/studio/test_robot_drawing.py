@@ -54,7 +54,7 @@ def test_a_sensor_on_a_servo_faces_the_servos_direction() -> None:
 
 def test_wheels_are_drawn_turned_by_the_rolled_distance() -> None:
     still_drawing, ahead_drawing, backward, turning, turned = drawings_of(
-        *(("tinibot", None, {**STANDING_STILL, "rolled": rolled})
+        *(("tinibot", None, {**STANDING_STILL, "rolled_cm": rolled})
           for rolled in ([0, 0], [0.5, 0.5], [-0.5, -0.5], [1.6, 1.6], [0.5, 0]))
     )  # fmt: skip
 

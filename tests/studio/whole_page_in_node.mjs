@@ -97,7 +97,7 @@ async function opens(stores) {
   class Blocks {
     form = { body: [], loose: [] };
     layoutText = 'L0';
-    isBusy = false;
+    isDragging = false;
     begins = 0; // of other programs
     has = {};
     constructor(_, __, level, page) {
@@ -117,7 +117,7 @@ async function opens(stores) {
     setLevel(level) { this.has.level = level; }
     beginProgram() { this.begins += 1; }
     levelOf() { return 'few'; }
-    setRobot() {} setTaught() {} setGivenBlocks() {} updateLanguage() {} resize() {} setRanges() {} showMates() {} goTo() {}
+    setRobot() {} setTaughtBlocks() {} setGivenBlocks() {} updateLanguage() {} resize() {} setRanges() {} showMates() {} goTo() {}
     async makePicture() { return null; }
   }
   const still = (name) => function made() { return new Proxy(this, { get: (_, property) => (property === 'then' ? undefined : () => name) }); };
@@ -143,7 +143,7 @@ async function opens(stores) {
     terminate() {}
   };
   const page = freshPage({
-    Arena, Blocks, Plot: still(''), RunAnnouncer: still(''), Sounds: still(''), starsText: String, boutEnd: () => '', bumpSentence: () => '', ...playedEditor,
+    Arena, Blocks, Plot: still(''), RunAnnouncer: still(''), Sounds: still(''), starsText: String, boutEndText: () => '', bumpSentence: () => '', ...playedEditor,
     generate: () => ({ toCanvas() {} }), correction: {},
   }, HTML);
   for (const [name, kept] of Object.entries(stores)) for (const [key, value] of kept) window[name].setItem(key, value);
@@ -351,7 +351,7 @@ function expects(tab) {
     if (['start_lessons', 'start_robot'].includes(did) && dataset.half !== 'robot') throw new Error('what was chosen is not seen');
     if (did === 'Add it to the program' && keptWork().lesson !== LESSONS[byId('lesson_page').dataset.lesson - 1].name) throw new Error(`a lesson's program is of ${keptWork().lesson || 'nobody'}`);
     const wasLeft = before.screen === 'program' && dataset.screen === 'start' && before.text.trim() !== '' && !tab.isShippedProgram(before.text);
-    if (wasLeft && !tab.versions.loadVersions().some(tab.versions.sameProgramAs(before))) throw new Error(`${before.text} is lost at the start screen`);
+    if (wasLeft && !tab.versions.loadVersions().some(tab.versions.isSameProgramAs(before))) throw new Error(`${before.text} is lost at the start screen`);
     if (['bar_new', 'new'].includes(did) && 'big' in dataset) throw new Error(`after ${did} the robot is seen as in a run`);
     if (LATER.includes(did)) tab.isComing = true;
     if (!PASSIVE.includes(did) || tab.isComing) tab.stays = null;

@@ -7,7 +7,7 @@ playsNavigator({});
 const page = freshPage();
 const parts = await page.load('world/parts.js');
 const { WORLDS, WORLD_LIMITS } = await page.load('page/words.js');
-const { KINDS, FLOOR, START, NUMBERS, CHOICE_KEYS } = parts;
+const { KINDS, FLOOR, START, NUMBERS, TOGGLE_KEYS } = parts;
 const ABOVE = ['start', 'rivals', 'flags', 'lamps', 'walls', 'boxes', 'lines', 'rings']; // what lies above comes first
 const NEAR = 0.11; // of what is rounded
 
@@ -121,9 +121,9 @@ function history(seed) {
       return changed;
     },
     chooses() {
-      const [kind, key] = random.of(Object.entries(CHOICE_KEYS)), part = parts.partsOf(world).findLast((item) => item.kind === kind), isOnNow = random() < 0.5;
+      const [kind, key] = random.of(Object.entries(TOGGLE_KEYS)), part = parts.partsOf(world).findLast((item) => item.kind === kind), isOnNow = random() < 0.5;
       if (!part) return world;
-      const changed = parts.withChoice(world, part, key, isOnNow);
+      const changed = parts.withToggle(world, part, key, isOnNow);
       is(parts.valueOf(changed, part)[key], isOnNow, key);
       others(changed, part);
       return changed;
@@ -158,12 +158,12 @@ function history(seed) {
       if (!found) return world;
       others(found.world, part);
       const after = parts.pointsOf(found.world, part), at = index < 0 ? points.length - 1 : index;
-      is(found.point, at + 1, 'the place of the new one');
-      is(after.toSpliced(found.point, 1), points, 'those of before');
+      is(found.pointIndex, at + 1, 'the place of the new one');
+      is(after.toSpliced(found.pointIndex, 1), points, 'those of before');
       const isBetween = points[at + 1] && isOn(points[at]) && isOn(points[at + 1]); // a floor may have become smaller
-      if (isBetween) near(fromPath([points[at], points[at + 1]], after[found.point]), 0, 'the new one', 0.1);
-      if (isBetween) near(far(points[at], after[found.point]), far(points[at + 1], after[found.point]), 'its place between both', 0.2);
-      if (!isOn(after[found.point].map((cm) => cm - 0.05)) && !isOn(after[found.point])) fails('the new one is off the floor');
+      if (isBetween) near(fromPath([points[at], points[at + 1]], after[found.pointIndex]), 0, 'the new one', 0.1);
+      if (isBetween) near(far(points[at], after[found.pointIndex]), far(points[at + 1], after[found.pointIndex]), 'its place between both', 0.2);
+      if (!isOn(after[found.pointIndex].map((cm) => cm - 0.05)) && !isOn(after[found.pointIndex])) fails('the new one is off the floor');
       return found.world;
     },
     finds() {
@@ -188,7 +188,7 @@ function history(seed) {
       is(parts.partAt(world, place, reach), wanted?.[0] ?? null, 'what is there');
       const points = parts.pointsOf(world, some());
       if (!points.length) return world;
-      const found = parts.pointAt(points, place, reach), least = Math.min(...points.map((point) => far(point, place)));
+      const found = parts.pointIndexAt(points, place, reach), least = Math.min(...points.map((point) => far(point, place)));
       if (found < 0 ? least <= reach - 1e-9 : far(points[found], place) > least + 1e-9 || least > reach) fails(`point ${found} is taken`);
       return world;
     },

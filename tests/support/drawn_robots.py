@@ -10,7 +10,7 @@ from tests.support.node import in_node
 from tiniscript.studio.description import description
 
 DRAW_SCRIPT = ROOT / "tests" / "studio" / "draw_in_node.mjs"
-STANDING_STILL: dict[str, Any] = {"rolled": [0, 0], "isBeeping": False}
+STANDING_STILL: dict[str, Any] = {"rolled_cm": [0, 0], "isBeeping": False}
 Drawing = list[tuple[str, list[float], str]]
 
 

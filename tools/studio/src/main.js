@@ -4,14 +4,14 @@ import { element } from './page/elements.js';
 import { Checker } from './writing/checking.js';
 import { Editor } from './writing/editor.js';
 import { bugSentence } from './page/faults.js';
-import { bytesOf, download, onFileChosen } from './page/files.js';
+import { readBytes, downloadText, onFileChosen } from './page/files.js';
 import { Lessons } from './lesson/lessons.js';
 import { showMessages, showRepair, summaryOf, messageWithFix } from './writing/messages.js';
 import { registerServiceWorker } from './page/offline.js';
 import { Phone } from './page/phone.js';
 import { Programs } from './programs/programs.js';
 import { Python } from './python.js';
-import { goAmongPictures, makePictureOption, makeRobotPicture } from './page/pictures.js';
+import { listenToPictureKeys, makePictureOption, makeRobotPicture } from './page/pictures.js';
 import { pageState } from './page/page_state.js';
 import { showOwnRobot } from './page/own_robot.js';
 import { holdsProgram } from './programs/links.js';
@@ -26,8 +26,8 @@ import { RunningPlace } from './robot/place.js';
 import { listenToSideButtons } from './page/sides.js';
 import { ignoreSecondPresses } from './page/twice.js';
 import { FIRST_PROGRAM } from './start/beginnings.js';
-import { openFirstScreen, isStart, showScreen as showScreen } from './start/screens.js';
-import { OwnWindow } from './start/own_window.js';
+import { openFirstScreen, isStartShown, showScreen } from './start/screens.js';
+import { OwnRobotWindow } from './start/own_window.js';
 import { Start } from './start/start.js';
 import { startTheme } from './page/theme.js';
 import { Views } from './writing/views.js';
@@ -43,7 +43,7 @@ const robotSelect = element('robot', HTMLSelectElement);
 const languageSelect = element('language', HTMLSelectElement);
 const wordsButton = element('words', HTMLButtonElement);
 const fileInput = element('file', HTMLInputElement);
-let noted_ms = 0;
+let lastNote_ms = 0;
 const statusElement = element('status', HTMLElement);
 const noteElement = element('note', HTMLElement);
 const messageList = element('messages', HTMLElement);
@@ -51,7 +51,7 @@ const messageList = element('messages', HTMLElement);
 startTheme();
 showOwnRobot();
 ignoreSecondPresses();
-goAmongPictures();
+listenToPictureKeys();
 const storedWork = loadWork();
 const work = storedWork ?? {
   text: FIRST_PROGRAM,
@@ -72,7 +72,7 @@ languageSelect.value = work.language = await setLanguage(work.language);
 element('coming', HTMLElement).remove();
 pageState.note.subscribe((sentence) => {
   noteElement.textContent = sentence;
-  noted_ms = performance.now();
+  lastNote_ms = performance.now();
 });
 pageState.programText.subscribe(forgetNote);
 for (const id of ['run', 'step', 'link_upload']) element(id, HTMLButtonElement).addEventListener('click', forgetNote, { capture: true }); // a phone takes some of them
@@ -96,7 +96,7 @@ pageState.robotName.set(work.robot);
 
 const editor = new Editor(element('editor', HTMLElement));
 const views = new Views({
-  python, editor, work, remember: storeCurrentWork,
+  python, editor, work, storeCurrentWork,
   tryAlone: (programText, isAsked) => {
     forgetNote();
     return simulatorPanel.tryAlone(programText, isAsked, () => {
@@ -108,15 +108,15 @@ const views = new Views({
 });
 const pad = new Pad();
 const simulatorPanel = new SimulatorPanel({
-  python, work, remember: storeCurrentWork, pad,
-  whenCompiled: () => checker.whenChecked(),
-  put: ({ text: programText, robot: robotName }) => {
+  python, work, storeCurrentWork, pad,
+  whenChecked: () => checker.whenChecked(),
+  putProgram: ({ text: programText, robot: robotName }) => {
     element('side_virtual', HTMLButtonElement).click();
     if (programText !== work.text || robotName !== work.robot) programs.replaceProgram({ text: programText, robot: robotName, name: '' });
     phone.show('robot');
   },
 });
-const programs = new Programs({ python, work, put: putProgram, makePicture: () => views.makePicture() });
+const programs = new Programs({ python, work, putProgram, makePicture: () => views.makePicture() });
 
 const recorder = new Recorder({ runs: simulatorPanel.runs, play: (run) => simulatorPanel.playAgain(run) });
 const runningPlace = new RunningPlace();
@@ -130,9 +130,9 @@ const robotPanel = new RobotPanel({
 const lessons = new Lessons({
   python,
   work,
-  put: (program) => programs.replaceProgram(program),
-  keep: () => programs.storeVersion(),
-  exchange: (program) => {
+  putProgram: (program) => programs.replaceProgram(program),
+  keepProgram: () => programs.storeVersion(),
+  exchangeProgram: (program) => {
     programs.storeVersion();
     openProgram(program);
   },
@@ -151,14 +151,14 @@ const checker = new Checker(python, (error) => {
 const phone = new Phone(() => robotPanel.run());
 openFirstScreen(entryFailure !== '' || holdsProgram(location.hash), !('class' in document.documentElement.dataset));
 if (storedWork) programs.storeVersion();
-new OwnWindow();
+new OwnRobotWindow();
 new Start({
   putProgram: (program) => programs.replaceProgram(program),
   runInWorld: (worldName) => {
     phone.show('robot');
     return simulatorPanel.run(worldName);
   },
-  seeProgram: () => views.wake(),
+  onProgramShown: () => views.wake(),
   showSide: (id) => {
     element(id, HTMLButtonElement).click();
     phone.show(id === 'side_virtual' ? 'program' : 'robot');
@@ -170,14 +170,14 @@ new Start({
     lessons.leave();
   },
 });
-if (!isStart()) lessons.comeBack();
+if (!isStartShown()) lessons.reopen();
 if ('class' in document.documentElement.dataset) {
   import('./class/classroom.js').then(({ openClass }) => openClass({
     panel: robotPanel, work, python, editor, views, keepProgram: () => programs.storeVersion(), openLesson: (lessonNumber) => {
       phone.show('robot');
       return lessons.open(lessonNumber);
     }, clearProgram: () => editor.replace(''), putProgram: (program) => programs.replaceProgram({ ...program, name: '' }),
-    newestRun: () => simulatorPanel.newestRunFile(), openRun: (file) => simulatorPanel.openRun(file),
+    fetchNewestRunFile: () => simulatorPanel.fetchNewestRunFile(), openRun: (file) => simulatorPanel.openRun(file),
   }));
 }
 
@@ -218,7 +218,7 @@ python.listen({
   },
   onBegin: () => {
     statusElement.textContent = text('starting');
-    checker.markBeginning();
+    checker.markRetry();
   },
   onFail: () => {
     statusElement.textContent = text('no_compiler');
@@ -229,7 +229,7 @@ python.ready.then(() => {
   isReady = true;
   checker.markReady();
   views.markReady();
-  if (isStart()) views.fetchAhead();
+  if (isStartShown()) views.prefetchBlocks();
 });
 
 /** @param {string} sentence of the newest text @param {string} className */
@@ -257,7 +257,7 @@ function repair(finding) {
 
 /** What was said of an edit goes with the next one or with a run. */
 function forgetNote() {
-  if (pageState.note.value && performance.now() - noted_ms > OWN_EDIT_MS) pageState.note.set('');
+  if (pageState.note.value && performance.now() - lastNote_ms > OWN_EDIT_MS) pageState.note.set('');
 }
 
 function showRobots() {
@@ -319,7 +319,7 @@ onFileChosen('file', async (file) => {
   }
   let answer;
   try {
-    const data = await bytesOf(file);
+    const data = await readBytes(file);
     answer = await python.ask({ do: 'open', robot: work.robot, language: currentLanguage() }, data);
   } catch {
     pageState.note.set(text('not_opened', { name: file.name, why: text('unreadable') }));
@@ -335,7 +335,7 @@ onFileChosen('file', async (file) => {
 
 element('save', HTMLButtonElement).addEventListener('click', () => {
   const name = work.name || text('file_name');
-  download(name, editor.text);
+  downloadText(name, editor.text);
   pageState.note.set(text('saved', { name }));
 });
 
@@ -347,7 +347,7 @@ addEventListener('keydown', (event) => {
   } else if (event.key === 'o') {
     event.preventDefault();
     fileInput.click();
-  } else if ('zZyY'.includes(event.key) && !event.defaultPrevented && !hasItsOwnUndo(event.composedPath()[0])) {
+  } else if ('zZyY'.includes(event.key) && !event.defaultPrevented && !hasOwnUndo(event.composedPath()[0])) {
     event.preventDefault();
     const isRedo = event.shiftKey || event.key === 'y';
     const idPrefix = 'drawing' in document.documentElement.dataset ? 'world_' : '';
@@ -356,7 +356,7 @@ addEventListener('keydown', (event) => {
 });
 
 /** Whether a key was pressed in a field of text, or in front of the page. @param {EventTarget | undefined} target */
-function hasItsOwnUndo(target) {
+function hasOwnUndo(target) {
   return target instanceof Element && target.closest('input:not([type=checkbox]), textarea, [contenteditable=true], dialog') !== null;
 }
 

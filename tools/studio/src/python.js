@@ -86,7 +86,7 @@ import { watchPromise } from './page/progress.js';
  * @property {number} began_ms from when on the rows count
  */
 
-/** @typedef {{resolve: (answer: any) => void, reject: (why: Error) => void}} PendingRequest */
+/** @typedef {{resolve: (answer: any) => void, reject: (error: Error) => void}} PendingRequest */
 
 /**
  * @typedef {object} PythonListener who is told about it until it is there

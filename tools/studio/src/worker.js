@@ -1,26 +1,26 @@
 // The worker: Python, and in it the compiler of this project itself.
 
 import { loadPyodide } from 'pyodide';
-import { Progress, watchedFetch } from './page/progress.js';
+import { ProgressWatch, watchedFetch } from './page/progress.js';
 // Nothing is installed: all modules are in the archives.
 import languages from '../made/languages.json';
 import lock from '../made/lock.json';
 
 postMessage({ id: 0, begun: true });
 const reportWait = () => postMessage({ id: 0, waits: true });
-const plainFetch = self.fetch.bind(self);
+const nativeFetch = self.fetch.bind(self);
 // Pyodide's own module. An import tells of no progress: while something else comes, the line carries it, too.
-const moduleProgress = new Progress({ onWait: reportWait });
+const moduleProgress = new ProgressWatch({ onWait: reportWait });
 const advanceModule = () => moduleProgress.advance();
 // What is held on its way ends, and the page is told before. Pyodide waits for ever for what it has not got.
 const reportError = (/** @type {unknown} */ error) => postMessage({ id: 0, error: String(error) });
-self.fetch = (resource, options) => watchedFetch(resource, { ...options, onWait: reportWait, onProgress: advanceModule, onFail: reportError }, plainFetch);
+self.fetch = (resource, options) => watchedFetch(resource, { ...options, onWait: reportWait, onProgress: advanceModule, onFail: reportError }, nativeFetch);
 
 const SOURCE_LANGUAGE = languages[0]?.[0] ?? ''; // the language that is always there
 
 /** @param {string} name */
 async function fetchFile(name) {
-  const response = await watchedFetch(`./${name}`, { onWait: reportWait, onProgress: advanceModule }, plainFetch).catch((error) => {
+  const response = await watchedFetch(`./${name}`, { onWait: reportWait, onProgress: advanceModule }, nativeFetch).catch((error) => {
     throw new Error(`${name}: ${error}`);
   });
   if (!response.ok) throw new Error(`${name}: ${response.status}`);

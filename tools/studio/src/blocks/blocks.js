@@ -3,14 +3,14 @@
 // The text is what is kept: a change of the blocks is told to the page, which asks for their text.
 
 import * as Blockly from 'blockly/core';
-import { clearWorkspace, drawForm, formOf, isLoose, formOfOne, keepPlaces, knownPlaces, makeRoom, piecesIn, showForm } from './form.js';
+import { clearWorkspace, drawForm, formOf, isLoose, formOfBlock, keepPlaces, knownPlaces, makeRoom, piecesIn, showForm } from './form.js';
 import { updateCalls, labelCalls } from './own_words.js';
 import { setActuators } from './places.js';
 import { Checker, defineBlocks, setNarrow, setNewPieces, setRobot } from './shapes.js';
 import { setTonePlayer } from './fields.js';
-import { insert } from './insert.js';
-import { pictureOf } from './picture.js';
-import { sayAsSeen } from './said.js';
+import { insertBlock } from './insert.js';
+import { renderPicture } from './picture.js';
+import { findingAsSeen } from './said.js';
 import { Search } from './search.js';
 import { getOptions } from './styles.js';
 import { findItems, levelOf, makeToolbox } from './toolbox.js';
@@ -19,7 +19,7 @@ import { Previewer } from './wrapping.js';
 import { makeZoomButtons } from './zoom.js';
 import { text, textsOf } from '../page/texts.js';
 
-/** @import { Form, Range } from './form.js' */
+/** @import { Form, TextRange } from './form.js' */
 /** @typedef {import('./toolbox.js').Level} Level */
 /** @typedef {import('../python.js').Finding} Finding */
 /** @typedef {import('../page/page_state.js').TaughtBlocks} TaughtBlocks */
@@ -61,19 +61,19 @@ export class Blocks {
   #triedBlocks = new Set();
   /** Those of the program that the page has brought. @type {string[]} */
   #givenBlocks = [];
-  /** Ids of the blocks, and where each is in the text. @type {[string, Range][]} */
+  /** Ids of the blocks, and where each is in the text. @type {[string, TextRange][]} */
   #places = [];
   #isTouched = false; // by somebody, who may have scrolled
   /** @type {import('./form.js').StackPlaces} */
   #stackPlaces = new Map();
   /** Where the next blocks stand, whatever is known of those before. @type {import('./form.js').StackPlaces | null} */
-  #nextPlaces = null;
+  #nextStackPlaces = null;
   /** @type {Blockly.icons.WarningIcon | null} */
   #openingBadge = null;
   #closedMessage = ''; // the message that somebody has put away
   /** The ids of the blocks with each look. @type {Record<string, Set<string>>} */
   #markedIds = {};
-  #faultAt = { id: '', said: '' };
+  #shownFault = { id: '', message: '' };
   #tryCount = 0; // of blocks that were tried: the look is that of the newest one
   /** @type {Search | null} */
   #search = null;
@@ -192,7 +192,7 @@ export class Blocks {
     const tryNumber = ++this.#tryCount;
     this.#setMarked('alone', [triedBlock.id]);
     try {
-      await listener.tryAlone(formOfOne(triedBlock), isAsked);
+      await listener.tryAlone(formOfBlock(triedBlock), isAsked);
     } finally {
       if (tryNumber === this.#tryCount) this.#setMarked('alone', []);
     }
@@ -202,11 +202,11 @@ export class Blocks {
   #insertWithoutDragging() {
     /** @type {Blockly.BlockSvg | null} */
     let lastFocused = null; // that had the focus of the program
-    const take = (/** @type {Blockly.BlockSvg} */ listBlock, /** @type {boolean} */ isByKey) => {
+    const takeBlock = (/** @type {Blockly.BlockSvg} */ listBlock, /** @type {boolean} */ isByKey) => {
       const workspace = this.#workspace;
       const focusedBlock = lastFocused && workspace.getBlockById(lastFocused.id) === lastFocused ? lastFocused : null;
       const isForStack = listBlock.previousConnection !== null; // a tap fills no place of a value: that may be meant to stay as it is
-      const block = insert(listBlock, workspace, isByKey || isForStack ? focusedBlock : null, !isByKey);
+      const block = insertBlock(listBlock, workspace, isByKey || isForStack ? focusedBlock : null, !isByKey);
       if (!block) return false;
       this.#search?.clearSearch();
       workspace.hideChaff();
@@ -222,13 +222,13 @@ export class Blocks {
       const listBlock = Blockly.getFocusManager().getFocusedNode();
       const isInList = listBlock instanceof Blockly.BlockSvg && listBlock.isInFlyout && this.#workspace === listBlock.workspace.targetWorkspace;
       if (!isInList || !['Enter', ' '].includes(event.key) || event.shiftKey || event.ctrlKey || event.metaKey) return;
-      if (!take(/** @type {Blockly.BlockSvg} */ (listBlock.getRootBlock()), true)) return; // Blockly lets it be moved to a place
+      if (!takeBlock(/** @type {Blockly.BlockSvg} */ (listBlock.getRootBlock()), true)) return; // Blockly lets it be moved to a place
       event.preventDefault();
       event.stopPropagation();
     }, { capture: true });
     const gesture = /** @type {any} */ (Blockly.Gesture.prototype), clickBlock = gesture.doBlockClick;
     gesture.doBlockClick = function () { // Blockly would put it where the list was
-      if (!this.flyout || !take(this.targetBlock.getRootBlock(), false)) clickBlock.call(this);
+      if (!this.flyout || !takeBlock(this.targetBlock.getRootBlock(), false)) clickBlock.call(this);
     };
   }
 
@@ -252,7 +252,7 @@ export class Blocks {
     if (mainWorkspace) common.setMainWorkspace(mainWorkspace);
     if (this.#listener) {
       this.#search?.element.remove();
-      this.#search = new Search(workspace, (words) => findItems(words, this.#usedNames));
+      this.#search = new Search(workspace, (query) => findItems(query, this.#usedNames));
       this.#container.prepend(this.#search.element);
       this.#search.fitWidth();
       this.#zoomButtons?.remove();
@@ -277,19 +277,19 @@ export class Blocks {
     return workspace;
   }
 
-  /** Whether a block is being dragged or a field is being typed in. */
-  get isBusy() {
+  /** Whether a block is being dragged. */
+  get isDragging() {
     return this.#workspace.isDragging();
   }
 
   /** Whether a field of a block is open. */
-  get isOpen() {
+  get isFieldOpen() {
     return Blockly.WidgetDiv.isVisible() || Blockly.DropDownDiv.isVisible();
   }
 
   /** The line of the text whose block has the focus, or 0. */
   get focusedLine() {
-    const id = this.hasFocus || this.isOpen || this.isBusy ? this.#focusedBlock()?.id : '';
+    const id = this.hasFocus || this.isFieldOpen || this.isDragging ? this.#focusedBlock()?.id : '';
     return this.#places.find(([blockId]) => blockId === id)?.[1][0] ?? 0;
   }
 
@@ -297,7 +297,7 @@ export class Blocks {
   showMates(matePlaces) {
     const { createSvgElement } = Blockly.utils.dom;
     for (const mark of this.#mateMarks) mark.remove();
-    this.#mateMarks = matePlaces.flatMap(({ line, color, said: label }) => {
+    this.#mateMarks = matePlaces.flatMap(({ line, color, label }) => {
       const block = this.#workspace.getBlockById(this.#places.find(([, [firstLine]]) => firstLine === line)?.[0] ?? '');
       if (!block) return [];
       const { width, height } = block.getHeightWidth();
@@ -347,7 +347,7 @@ export class Blocks {
   }
 
   /** No lesson takes away what another one has offered. @param {TaughtBlocks} taught what the open lesson speaks of */
-  setTaught({ offered: offeredKinds, fresh: newPieces }) {
+  setTaughtBlocks({ offered: offeredKinds, fresh: newPieces }) {
     this.#taughtBlocks = [...new Set([...this.#taughtBlocks, ...offeredKinds])];
     this.#newBlocks = newPieces;
     this.#updateToolbox();
@@ -372,18 +372,18 @@ export class Blocks {
   }
 
   /** Other blocks as a PNG file, made in slices: nobody sees them here. @param {Form} form @param {string} robotName @param {number} mostPixels pixels */
-  async pictureOfForm(form, robotName, mostPixels) {
+  async makeFormPicture(form, robotName, mostPixels) {
     setRobot(robotName);
     setActuators(robotName);
     await drawForm(this.#workspace, form);
-    const picture = await pictureOf(this.#workspace.getCanvas(), this.#workspace.getBlocksBoundingBox(), mostPixels);
+    const picture = await renderPicture(this.#workspace.getCanvas(), this.#workspace.getBlocksBoundingBox(), mostPixels);
     clearWorkspace(this.#workspace);
     return picture;
   }
 
   /** The blocks as a PNG file; null without any. @returns {Promise<Blob | null>} */
   makePicture() {
-    return pictureOf(this.#workspace.getCanvas(), this.#workspace.getBlocksBoundingBox());
+    return renderPicture(this.#workspace.getCanvas(), this.#workspace.getBlocksBoundingBox());
   }
 
   resize() {
@@ -391,7 +391,7 @@ export class Blocks {
     const resize = () => {
       Blockly.svgResize(this.#workspace);
       this.#search?.fitWidth();
-      if (!this.isBusy) makeRoom(this.#workspace, true);
+      if (!this.isDragging) makeRoom(this.#workspace, true);
       this.#scrollToBeginning();
     };
     if (this.#runFollower) this.#runFollower.resizeBy(resize);
@@ -414,7 +414,7 @@ export class Blocks {
   beginProgram() {
     this.#isTouched = false;
     this.#stackPlaces.clear();
-    this.#nextPlaces = null;
+    this.#nextStackPlaces = null;
   }
 
   /**
@@ -422,19 +422,19 @@ export class Blocks {
    * @param {Form} form
    * @param {import('./form.js').StackPlaces} knownStacks
    */
-  show(form, knownStacks = this.#nextPlaces ?? knownPlaces(this.#workspace, this.#stackPlaces)) {
-    this.#nextPlaces = null;
+  show(form, knownStacks = this.#nextStackPlaces ?? knownPlaces(this.#workspace, this.#stackPlaces)) {
+    this.#nextStackPlaces = null;
     const workspace = this.#workspace;
     const { scrollX, scrollY } = workspace;
     const focusIndex = this.hasFocus ? this.#places.findIndex(([id]) => id === this.#focusedBlock()?.id) : null;
     if (focusIndex !== null) Blockly.getFocusManager().focusNode(workspace); // else a block that goes gives it to a neighbour, later
     Blockly.hideChaff();
     this.#markedIds = {};
-    this.#faultAt = { id: '', said: '' };
+    this.#shownFault = { id: '', message: '' };
     const ids = showForm(this.#workspace, form, knownStacks);
     labelCalls(this.#workspace);
     this.setRanges(ids, flatten(form.body).map((block) => block.place ?? [0, 0, 0, 0]));
-    this.#noteUse(form);
+    this.#updateUsedNames(form);
     this.#markLoose();
     const block = focusIndex === null ? null : this.#workspace.getBlockById(ids[Math.min(focusIndex, ids.length - 1)] ?? '');
     if (block) Blockly.getFocusManager().focusNode(block);
@@ -461,7 +461,7 @@ export class Blocks {
   readForm() {
     makeRoom(this.#workspace);
     const formWithIds = formOf(this.#workspace);
-    this.#noteUse(formWithIds.form);
+    this.#updateUsedNames(formWithIds.form);
     this.#markLoose();
     return formWithIds;
   }
@@ -478,7 +478,7 @@ export class Blocks {
   set layoutText(layoutText) {
     /** @type {[string, {x: number, y: number}[]][]} */
     const stackPlaces = JSON.parse(layoutText);
-    this.#nextPlaces = new Map(stackPlaces.map(([name, places]) => [name, places.map(({ x, y }) => new Blockly.utils.Coordinate(x, y))]));
+    this.#nextStackPlaces = new Map(stackPlaces.map(([name, places]) => [name, places.map(({ x, y }) => new Blockly.utils.Coordinate(x, y))]));
   }
 
   /** What is not joined to the program looks it, and is found where it is now. */
@@ -490,14 +490,14 @@ export class Blocks {
 
   /**
    * @param {string[]} ids
-   * @param {Range[]} places
+   * @param {TextRange[]} places
    */
   setRanges(ids, places) {
     this.#places = ids.map((id, index) => [id, places[index] ?? [0, 0, 0, 0]]);
   }
 
   /** Offers the names that the program has. @param {Form} form */
-  #noteUse(form) {
+  #updateUsedNames(form) {
     const blocks = blocksOf(form);
     const wordsOfKind = (/** @type {string} */ kind) => [...new Set(blocks.filter((block) => block.kind === kind).map((block) => block.word))].sort();
     const valueCounts = new Map(blocks.filter((block) => block.kind === 'def').map((block) => [block.word, block.values.length]));
@@ -518,11 +518,11 @@ export class Blocks {
     const messages = new Map();
     /** @type {Set<string>} */
     const wrongIds = new Set();
-    if (this.#faultAt.id) messages.set(this.#faultAt.id, [this.#faultAt.said]);
+    if (this.#shownFault.id) messages.set(this.#shownFault.id, [this.#shownFault.message]);
     for (const finding of findings) {
       const id = this.#blockAt(finding.line, finding.column) ?? '';
-      const { message, fix } = sayAsSeen(finding), saidText = [message, fix && `${text('try')} ${fix}`].filter(Boolean).join('\n');
-      messages.set(id, [...(messages.get(id) ?? []), saidText]);
+      const { message, fix } = findingAsSeen(finding), messageText = [message, fix && `${text('try')} ${fix}`].filter(Boolean).join('\n');
+      messages.set(id, [...(messages.get(id) ?? []), messageText]);
       if (finding.severity === 'mistake') wrongIds.add(id);
     }
     Blockly.Events.disable();
@@ -621,9 +621,9 @@ export class Blocks {
    */
   showFault(range, message) {
     const id = range ? this.#blockAt(range.line, range.column) ?? '' : '';
-    if (id === this.#faultAt.id && message === this.#faultAt.said) return;
+    if (id === this.#shownFault.id && message === this.#shownFault.message) return;
     this.#setMarked('fault', [id]);
-    this.#faultAt = { id, said: message };
+    this.#shownFault = { id, message };
     this.showFindings(this.#findings);
   }
 

@@ -52,7 +52,7 @@ export class Pictures {
     if (this.#isBusy) return;
     this.#isBusy = true;
     while (this.#pendingRequests.size) {
-      const request = this.#takeNext();
+      const request = this.#takeNextRequest();
       if (request) {
         request.onDone(await this.#drawPicture(request.program).catch(() => NO_PICTURE));
       }
@@ -62,7 +62,7 @@ export class Pictures {
   }
 
   /** The oldest wish of whom no picture was begun just now. */
-  #takeNext() {
+  #takeNextRequest() {
     const now_ms = performance.now();
     const request = [...this.#pendingRequests.values()].find(({ owner: key }) => now_ms - (this.#begunTimes_ms.get(key) ?? -OWNER_INTERVAL_MS) >= OWNER_INTERVAL_MS);
     if (request) {
@@ -84,7 +84,7 @@ export class Pictures {
     });
     if (this.#isLanguageOld) blocks.updateLanguage();
     this.#isLanguageOld = false;
-    const file = await blocks.pictureOfForm(form, robotName, MOST_PIXELS);
+    const file = await blocks.makeFormPicture(form, robotName, MOST_PIXELS);
     return file ? URL.createObjectURL(file) : NO_PICTURE;
   }
 

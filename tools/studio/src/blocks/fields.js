@@ -2,7 +2,7 @@
 
 import * as Blockly from 'blockly/core';
 import { Piano } from './piano.js';
-import { rangeAt } from './places.js';
+import { rangeForNumber } from './places.js';
 import { hertzOfKey, keyName, keyOfHertz, nextKeyFrom } from './tones.js';
 import { pageState } from '../page/page_state.js';
 import { text } from '../page/texts.js';
@@ -23,7 +23,7 @@ export function setTonePlayer(player) {
  * @param {any} field
  * @param {() => void} onKey what a key does in it
  */
-function reportTakenBack(field, onKey) {
+function reportRevert(field, onKey) {
   const valueBefore = field.getValue();
   onKey();
   const value = field.getValue();
@@ -47,7 +47,7 @@ export class NumberField extends Blockly.FieldNumber {
     const validNumber = super.doClassValidation_(THOUSANDS.test(typed) ? typed : typed.replaceAll(',', '.'));
     if (validNumber === null && this.isBeingEdited_) this.changeNotice = text('no_number', { typed: typed.trim() });
     if (validNumber === null || !this.isBeingEdited_) return validNumber;
-    const { low, high } = rangeAt(this.getSourceBlock());
+    const { low, high } = rangeForNumber(this.getSourceBlock());
     const fittingNumber = Math.min(high, Math.max(low, validNumber));
     this.changeNotice = fittingNumber === validNumber ? '' : text('number_fits', { typed: typed.trim(), low, high, fitting: fittingNumber });
     return fittingNumber;
@@ -63,7 +63,7 @@ export class NumberField extends Blockly.FieldNumber {
   /** A phone shows keys of digits, which lack a minus on some. */
   widgetCreate_() {
     const input = super.widgetCreate_();
-    if (rangeAt(this.getSourceBlock()).low >= 0) input.inputMode = 'decimal';
+    if (rangeForNumber(this.getSourceBlock()).low >= 0) input.inputMode = 'decimal';
     return input;
   }
 
@@ -108,7 +108,7 @@ export class NumberField extends Blockly.FieldNumber {
   onHtmlInputKeyDown_(event) {
     const direction = { ArrowUp: 1, ArrowDown: -1 }[event.key];
     if (!this.isPitch || !direction) {
-      reportTakenBack(this, () => super.onHtmlInputKeyDown_(event));
+      reportRevert(this, () => super.onHtmlInputKeyDown_(event));
       return;
     }
     event.preventDefault();
@@ -172,7 +172,7 @@ export class NameField extends Blockly.FieldTextInput {
 
   /** @param {KeyboardEvent} event */
   onHtmlInputKeyDown_(event) {
-    reportTakenBack(this, () => super.onHtmlInputKeyDown_(event));
+    reportRevert(this, () => super.onHtmlInputKeyDown_(event));
   }
 }
 
@@ -210,6 +210,6 @@ export class LineField extends Blockly.FieldTextInput {
 
   /** @param {KeyboardEvent} event */
   onHtmlInputKeyDown_(event) {
-    reportTakenBack(this, () => super.onHtmlInputKeyDown_(event));
+    reportRevert(this, () => super.onHtmlInputKeyDown_(event));
   }
 }

@@ -10,7 +10,7 @@ import { Checker } from './shapes.js';
 import { runAtOnce, runInSlices } from './slices.js';
 import { KINDS, pieceOf } from '../page/words.js';
 
-/** @typedef {[number, number, number, number]} Range line and column, from 1, and those of the end */
+/** @typedef {[number, number, number, number]} TextRange line and column, from 1, and those of the end */
 /** @typedef {[string, string][]} Value */
 /**
  * @typedef {object} FormBlock
@@ -20,7 +20,7 @@ import { KINDS, pieceOf } from '../page/words.js';
  * @property {FormBlock[][]} bodies
  * @property {string} note
  * @property {boolean} is_apart
- * @property {Range} [place]
+ * @property {TextRange} [place]
  * @property {string[]} [said] what its lines were; one is empty that somebody has changed
  * @property {string} [comment] what its note was, or of a comment itself
  * @property {boolean} [is_behind] the end of a block, or an arm
@@ -36,7 +36,7 @@ const STACK_GAP = 64; // between stacks: Blockly pushes what is nearer than it w
  * What is known of blocks since they were made of a text.
  * @typedef {object} ShownBlocks
  * @property {string[]} program ids of its blocks
- * @property {Map<string, {blocksBefore: number, x: number, y: number, isMoved: boolean}>} hats by their ids in the order of
+ * @property {Map<string, {blockCountBefore: number, x: number, y: number, isMoved: boolean}>} hats by their ids in the order of
  *   the text: so many blocks of the program stand before it, where it was put, and whether somebody had moved it
  * @property {Set<string>} earlyDefs
  */
@@ -72,7 +72,7 @@ export function formOf(workspace) {
  * @param {Blockly.Block} block
  * @returns {Form}
  */
-export function formOfOne(block) {
+export function formOfBlock(block) {
   const topBlocks = topBlocksOf(/** @type {Blockly.WorkspaceSvg} */ (block.workspace));
   const definitions = topBlocks.filter((top) => top.type === 'def' && top !== block).map((top) => blockOf(top, []));
   const showBlock = { kind: 'show', word: 'SHOW', values: [valueOf(block)], bodies: [], note: '', is_apart: false };
@@ -99,18 +99,18 @@ export function isLoose(top) {
 /** @param {Blockly.WorkspaceSvg} workspace @returns {import('./hats.js').TextItem[]} the blocks of the text's top level, in its order */
 function itemsOf(workspace) {
   const topBlocks = topBlocksOf(workspace);
-  const program = stackFrom(topBlocks.find((block) => block.type === 'program')?.getNextBlock() ?? null);
+  const programBlocks = stackFrom(topBlocks.find((block) => block.type === 'program')?.getNextBlock() ?? null);
   const shownBlocks = SHOWN_BLOCKS.get(workspace) ?? { program: [], hats: new Map(), earlyDefs: new Set() };
   const indexOfId = new Map(shownBlocks.program.map((id, index) => [id, index]));
-  const order = [...shownBlocks.hats.keys()];
-  const hats = topBlocks.filter(isHat).sort((a, b) => order.indexOf(a.id) - order.indexOf(b.id));
-  return inTextOrder(program.map(itemOf), hats.map((hat) => {
+  const hatIds = [...shownBlocks.hats.keys()];
+  const hats = topBlocks.filter(isHat).sort((a, b) => hatIds.indexOf(a.id) - hatIds.indexOf(b.id));
+  return inTextOrder(programBlocks.map(itemOf), hats.map((hat) => {
     const { x, y } = hat.getRelativeToSurfaceXY();
-    const blocksBefore = isMoved(hat) ? null : shownBlocks.hats.get(hat.id)?.blocksBefore ?? 0;
-    if (blocksBefore === null) return { ...itemOf(hat), x, y, gap: null };
-    const isAtEnd = blocksBefore === shownBlocks.program.length;
-    const lastBlockBefore = program.findLastIndex(({ id }) => (indexOfId.get(id) ?? Infinity) < blocksBefore);
-    return { ...itemOf(hat), x, y, gap: isAtEnd ? program.length : lastBlockBefore + 1 };
+    const blockCountBefore = isMoved(hat) ? null : shownBlocks.hats.get(hat.id)?.blockCountBefore ?? 0;
+    if (blockCountBefore === null) return { ...itemOf(hat), x, y, gap: null };
+    const isAtEnd = blockCountBefore === shownBlocks.program.length;
+    const lastIndexBefore = programBlocks.findLastIndex(({ id }) => (indexOfId.get(id) ?? Infinity) < blockCountBefore);
+    return { ...itemOf(hat), x, y, gap: isAtEnd ? programBlocks.length : lastIndexBefore + 1 };
   }), shownBlocks.earlyDefs);
 }
 
@@ -151,7 +151,7 @@ export function keepPlaces(workspace, stackPlaces) {
   for (const top of topBlocks) stackPlaces.get(stackName(top))?.push(top.getRelativeToSurfaceXY());
   const shownBlocks = SHOWN_BLOCKS.get(workspace);
   const hats = hatsOf(workspace);
-  for (const [index, name] of namesOf(hats).entries()) {
+  for (const [index, name] of hatNamesOf(hats).entries()) {
     const hat = /** @type {Blockly.Block} */ (hats[index]);
     if (isMoved(hat) || shownBlocks?.hats.get(hat.id)?.isMoved) stackPlaces.set(name, [hat.getRelativeToSurfaceXY()]);
     else stackPlaces.delete(name);
@@ -167,7 +167,7 @@ export function keepPlaces(workspace, stackPlaces) {
 export function knownPlaces(workspace, stackPlaces) {
   const { left: viewLeft, top: viewTop, width, height } = workspace.getMetricsManager().getViewMetrics(true);
   const view = new Blockly.utils.Rect(viewTop, viewTop + height - CORNER_UNITS, viewLeft, viewLeft + width - CORNER_UNITS);
-  const presentNames = new Set([...namesOf(hatsOf(workspace)), ...topBlocksOf(workspace).filter(isLoose).map((top) => stackName(top))]);
+  const presentNames = new Set([...hatNamesOf(hatsOf(workspace)), ...topBlocksOf(workspace).filter(isLoose).map((top) => stackName(top))]);
   return new Map([...stackPlaces].map(([name, places]) => [name, places.filter(({ x, y }) => presentNames.has(name) || view.contains(x, y))]));
 }
 
@@ -177,7 +177,7 @@ function hatsOf(workspace) {
 }
 
 /** @param {Blockly.Block[]} hats in the order of the text @returns {string[]} a name for each: of its kind and word the how manieth it is */
-function namesOf(hats) {
+function hatNamesOf(hats) {
   /** @type {Map<string, number>} */
   const counts = new Map();
   return hats.map((hat) => {
@@ -212,7 +212,7 @@ function bodyOf(first, ids) {
 function blockOf(block, ids) {
   ids.push(block.id);
   const data = dataOf(block);
-  const firstInside = block.inputList.filter((input) => /^B\d|^OTHERWISE/.test(input.name)).map((input) => input.connection?.targetBlock() ?? null);
+  const firstInnerBlocks = block.inputList.filter((input) => /^B\d|^OTHERWISE/.test(input.name)).map((input) => input.connection?.targetBlock() ?? null);
   const word = String(wordOnBlock(block) ?? data.word ?? impliedWordOf(block.type)), values = valuesOf(block), note = block.getCommentText() ?? '';
   const linesData = data.was ?? {};
   const isNoteSame = word === linesData.word && note === linesData.note;
@@ -220,7 +220,7 @@ function blockOf(block, ids) {
     kind: block.type,
     word,
     values,
-    bodies: (isHat(block) ? [block.getNextBlock()] : firstInside).map((first) => bodyOf(first, ids)),
+    bodies: (isHat(block) ? [block.getNextBlock()] : firstInnerBlocks).map((first) => bodyOf(first, ids)),
     note,
     is_apart: Boolean(data.isApart),
     said: word === linesData.word ? data.said.map((/** @type {string} */ line, /** @type {number} */ lineIndex) => (lineOf(block, values, lineIndex) === linesData.lines[lineIndex] ? line : '')) : [],
@@ -235,7 +235,7 @@ function lineOf(block, values, lineIndex) {
 }
 
 /** Keeps what the lines of a block are in the text, as long as nobody changes them. @param {Blockly.Block} block @param {FormBlock} form */
-function remember(block, { word, is_apart, is_behind, said: oldLines = [], comment }) {
+function rememberLines(block, { word, is_apart, is_behind, said: oldLines = [], comment }) {
   const values = valuesOf(block);
   block.data = JSON.stringify({
     word, isApart: is_apart, isBehind: is_behind, said: oldLines, comment,
@@ -394,7 +394,7 @@ function* makingSteps(form, makeBlock, ids) {
   let aboveConnection = program.nextConnection;
   for (const formBlock of form.body) {
     const isInProgram = !KINDS[formBlock.kind]?.is_hat;
-    const block = yield* hangSteps([formBlock], isInProgram ? aboveConnection : null, makeBlock, ids);
+    const block = yield* hangingSteps([formBlock], isInProgram ? aboveConnection : null, makeBlock, ids);
     if (!block) continue;
     if (isInProgram) {
       programIds.push(block.id);
@@ -402,7 +402,7 @@ function* makingSteps(form, makeBlock, ids) {
     } else hats.push([block, programIds.length]);
   }
   const looseBlocks = [];
-  for (const { body, value } of form.loose) looseBlocks.push(body.length ? yield* hangSteps(body, null, makeBlock, []) : makeValueBlock(value, makeBlock));
+  for (const { body, value } of form.loose) looseBlocks.push(body.length ? yield* hangingSteps(body, null, makeBlock, []) : makeValueBlock(value, makeBlock));
   SHOWN_BLOCKS.set(program.workspace, { program: programIds, hats: new Map(), earlyDefs: findEarlyDefs(form.body) });
   return { program, hats, loose: looseBlocks };
 }
@@ -417,12 +417,12 @@ function placeTopBlocks(workspace, { program, hats, loose }, stackPlaces) {
   const placesLeft = new Map([...stackPlaces].map(([name, places]) => [name, [...places]]));
   const shownBlocks = SHOWN_BLOCKS.get(workspace);
   program.moveTo(new Blockly.utils.Coordinate(CORNER_UNITS, CORNER_UNITS));
-  for (const [index, name] of namesOf(hats.map(([hat]) => hat)).entries()) {
-    const [hat, blocksBefore] = /** @type {TopBlocks['hats'][number]} */ (hats[index]);
+  for (const [index, name] of hatNamesOf(hats.map(([hat]) => hat)).entries()) {
+    const [hat, blockCountBefore] = /** @type {TopBlocks['hats'][number]} */ (hats[index]);
     const knownPlace = placesLeft.get(name)?.shift();
     if (knownPlace) hat.moveTo(knownPlace);
     const { x, y } = hat.getRelativeToSurfaceXY();
-    shownBlocks?.hats.set(hat.id, { blocksBefore, x, y, isMoved: Boolean(knownPlace) });
+    shownBlocks?.hats.set(hat.id, { blockCountBefore, x, y, isMoved: Boolean(knownPlace) });
   }
   lineUp(workspace, program, hats.map(([hat]) => hat).filter((hat) => !shownBlocks?.hats.get(hat.id)?.isMoved));
   const boxes = [program, ...hats.map(([hat]) => hat)].map((block) => block.getBoundingRectangle()).filter((box) => box.left < CORNER_UNITS + STACK_GAP);
@@ -473,7 +473,7 @@ function lineUp(workspace, program, hats) {
 export function makeRoom(workspace, isResized = false) {
   const program = /** @type {Blockly.BlockSvg | undefined} */ (workspace.getBlocksByType('program')[0]);
   const hats = workspace.getTopBlocks(true).filter(isHat);
-  const [movedHats, unmovedHats] = [true, false].map((isWanted) => hats.filter((hat) => isWanted === Boolean(isMoved(hat) || SHOWN_BLOCKS.get(workspace)?.hats.get(hat.id)?.isMoved)));
+  const [movedHats, unmovedHats] = [true, false].map((isMovedWanted) => hats.filter((hat) => isMovedWanted === Boolean(isMoved(hat) || SHOWN_BLOCKS.get(workspace)?.hats.get(hat.id)?.isMoved)));
   if (!program || !movedHats || !unmovedHats) return;
   const obstacleOf = (/** @type {Blockly.BlockSvg} */ hat) => [program, ...hats].find((other) =>
     other !== hat && other.getBoundingRectangle().intersects(hat.getBoundingRectangle()));
@@ -523,7 +523,7 @@ function moveToFreePlace(block, workspace) {
  * @param {string[]} ids
  * @returns {Generator<void, Blockly.BlockSvg | null>} the first
  */
-function* hangSteps(blocks, connection, makeBlock, ids) {
+function* hangingSteps(blocks, connection, makeBlock, ids) {
   let firstBlock = null;
   let connectionAbove = connection;
   for (const formBlock of blocks) {
@@ -542,9 +542,9 @@ function* hangSteps(blocks, connection, makeBlock, ids) {
     formBlock.values.forEach((value, index) => putValue(value, block.getInput(`V${index}`)?.connection ?? null, makeBlock));
     for (const [index, body] of formBlock.bodies.entries()) {
       const input = block.getInput(`B${index}`) ?? block.getInput('OTHERWISE');
-      yield* hangSteps(body, isHat(block) ? block.nextConnection : input?.connection ?? null, makeBlock, ids);
+      yield* hangingSteps(body, isHat(block) ? block.nextConnection : input?.connection ?? null, makeBlock, ids);
     }
-    remember(block, formBlock);
+    rememberLines(block, formBlock);
     if (block.previousConnection) connectionAbove?.connect(block.previousConnection);
     connectionAbove = block.nextConnection;
     yield;

@@ -35,24 +35,24 @@ export function inTextOrder(program, hats, earlyDefs) {
 
 /** Moves each DEF up that is called before it. @param {TextItem[]} items @param {Set<string>} earlyDefs @returns {TextItem[]} */
 function withDefsBeforeCalls(items, earlyDefs) {
-  const order = [...items];
-  for (let roundsLeft = order.length; roundsLeft; roundsLeft -= 1) { // more would be DEFs that call each other
-    const earlyCall = findEarlyCall(order, earlyDefs);
+  const orderedItems = [...items];
+  for (let roundsLeft = orderedItems.length; roundsLeft; roundsLeft -= 1) { // more would be DEFs that call each other
+    const earlyCall = findEarlyCall(orderedItems, earlyDefs);
     if (!earlyCall) break;
-    const { def: defIndex, call: callIndex } = earlyCall;
-    const [item] = order.splice(defIndex, 1);
-    const isHat = ['def', 'task', 'when'].includes(order[callIndex]?.block.kind ?? '');
-    if (item) order.splice(isHat ? callIndex : Math.min(callIndex, countComments(order)), 0, item);
+    const { defIndex, callIndex } = earlyCall;
+    const [item] = orderedItems.splice(defIndex, 1);
+    const isHat = ['def', 'task', 'when'].includes(orderedItems[callIndex]?.block.kind ?? '');
+    if (item) orderedItems.splice(isHat ? callIndex : Math.min(callIndex, countComments(orderedItems)), 0, item);
   }
-  return order;
+  return orderedItems;
 }
 
-/** @param {TextItem[]} items @param {Set<string>} earlyDefs @returns {{def: number, call: number} | null} where a DEF is, and a call before it */
+/** @param {TextItem[]} items @param {Set<string>} earlyDefs @returns {{defIndex: number, callIndex: number} | null} where a DEF is, and a call before it */
 function findEarlyCall(items, earlyDefs) {
   for (const [defIndex, { block }] of items.entries()) {
     if (block.kind !== 'def' || earlyDefs.has(block.word)) continue;
     const callIndex = items.findIndex((item) => item.block !== block && isCalledIn(block.word, item.block));
-    if (callIndex >= 0 && callIndex < defIndex) return { def: defIndex, call: callIndex };
+    if (callIndex >= 0 && callIndex < defIndex) return { defIndex, callIndex };
   }
   return null;
 }
@@ -62,7 +62,7 @@ export function findEarlyDefs(body) {
   /** @type {Set<string>} */
   const earlyDefs = new Set();
   const items = body.map((block) => ({ block, ids: [] }));
-  for (let earlyCall = findEarlyCall(items, earlyDefs); earlyCall; earlyCall = findEarlyCall(items, earlyDefs)) earlyDefs.add(body[earlyCall.def]?.word ?? '');
+  for (let earlyCall = findEarlyCall(items, earlyDefs); earlyCall; earlyCall = findEarlyCall(items, earlyDefs)) earlyDefs.add(body[earlyCall.defIndex]?.word ?? '');
   return earlyDefs;
 }
 
@@ -78,6 +78,6 @@ function isCalledIn(word, block) {
 
 /** @param {TextItem[]} items @returns {number} how many comments they begin with */
 function countComments(items) {
-  const firstOther = items.findIndex(({ block }) => block.kind !== 'comment');
-  return firstOther < 0 ? items.length : firstOther;
+  const firstOtherIndex = items.findIndex(({ block }) => block.kind !== 'comment');
+  return firstOtherIndex < 0 ? items.length : firstOtherIndex;
 }

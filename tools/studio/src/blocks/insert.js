@@ -70,7 +70,7 @@ function connectionInStack(block, stacks, focusedBlock) {
  * @param {boolean} mayBeLoose what has no such place lies beside all others
  * @returns {BlockSvg | null} the new block; null where there is no such place
  */
-export function insert(listBlock, workspace, focusedBlock, mayBeLoose) {
+export function insertBlock(listBlock, workspace, focusedBlock, mayBeLoose) {
   const state = Blockly.serialization.blocks.save(listBlock);
   const program = /** @type {BlockSvg | undefined} */ (workspace.getBlocksByType('program')[0]);
   if (!state || !program) return null;

@@ -17,12 +17,12 @@ export class BlockNames {
   /** @param {string} code an instruction, a value or a word @param {string} robotName @returns {string} the words on its block, or else the code */
   nameOf(code, robotName) {
     const key = `${robotName} ${code}`;
-    if (!this.#spokenBlocks.has(key)) this.#find(key, code, robotName);
+    if (!this.#spokenBlocks.has(key)) this.#fetchSpokenBlocks(key, code, robotName);
     return labelOfCode(code, this.#spokenBlocks.get(key) ?? {})?.text || code;
   }
 
   /** @param {string} key @param {string} code @param {string} robotName */
-  async #find(key, code, robotName) {
+  async #fetchSpokenBlocks(key, code, robotName) {
     this.#spokenBlocks.set(key, {});
     if (/^\w+$/.test(code)) return; // what a word is called, the page knows
     const spokenBlocks = await this.#python.ask({ do: 'speak', robot: robotName, code }).catch(() => null);

@@ -45,7 +45,7 @@ export const DEF_METHODS = {
   },
 
   /** @this {any} */
-  addOne() {
+  addValue() {
     const names = this.names();
     if (names.length >= MOST_PARAMETERS) return;
     const takenNames = new Set([...names, ...this.workspace.getAllBlocks(false).map((/** @type {any} */ block) => block.getFieldValue('WORD'))]);
@@ -54,14 +54,14 @@ export const DEF_METHODS = {
   },
 
   /** @this {any} */
-  removeOne() {
+  removeValue() {
     changeState(this, () => this.setNames(this.names().slice(0, -1)));
   },
 
   /** @this {any} adds the fields and buttons after its own name */
   addNames() {
     const input = this.appendDummyInput('NAMES');
-    for (const [name, onClick] of [['more', () => this.addOne()], ['less', () => this.removeOne()]]) {
+    for (const [name, onClick] of [['more', () => this.addValue()], ['less', () => this.removeValue()]]) {
       const tip = tipOf(`${name}_values`);
       input.appendField(new Blockly.FieldImage(`./${name}.svg`, BUTTON_UNITS, BUTTON_UNITS, tip, /** @type {any} */ (onClick))).fieldRow.at(-1).setTooltip(tip);
     }

@@ -23,7 +23,7 @@ const ALIGNMENTS = { start: 'left', middle: 'center', end: 'right' };
  * @param {number} [mostPixels] pixels
  * @returns {Promise<Blob | null>}
  */
-export async function pictureOf(canvas, { left, right, top, bottom }, mostPixels = MOST_PIXELS) {
+export async function renderPicture(canvas, { left, right, top, bottom }, mostPixels = MOST_PIXELS) {
   const width = right - left + 2 * MARGIN, height = bottom - top + 2 * MARGIN;
   if (!(right > left && bottom > top)) return null;
   const scale = Math.min(PIXEL_RATIO, MOST_SIDE_PX / width, MOST_SIDE_PX / height, Math.sqrt(mostPixels / (width * height)));
@@ -63,7 +63,7 @@ function* paintingSteps(root, pen) {
 function matrixOf(element, outerMatrix) {
   const transforms = element.transform.baseVal;
   return Array.from({ length: transforms.numberOfItems }, (_, k) => transforms.getItem(k).matrix)
-    .reduce((place, { a, b, c, d, e, f }) => place.multiply(new DOMMatrix([a, b, c, d, e, f])), outerMatrix);
+    .reduce((matrix, { a, b, c, d, e, f }) => matrix.multiply(new DOMMatrix([a, b, c, d, e, f])), outerMatrix);
 }
 
 /** @param {SVGGraphicsElement} element @returns {Path2D | null} */

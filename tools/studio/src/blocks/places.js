@@ -4,21 +4,21 @@
 import description from '../../made/description.json';
 import { devicesOf } from '../page/words.js';
 
-/** @typedef {{low: number, high: number, sample: string}} Range */
+/** @typedef {{low: number, high: number, sample: string}} NumberRange */
 
 const ANY_RANGE = { low: -2147483.648, high: 2147483.647, sample: '1' };
-/** @type {Map<string, Range[]>} */
-const ARGUMENTS = new Map(description.words.map((word) => [word.text, word.arguments]));
+/** @type {Map<string, NumberRange[]>} */
+const ARGUMENT_RANGES = new Map(description.words.map((word) => [word.text, word.arguments]));
 /** Of each role of an instruction its first word: a kind of block is named like it. @type {Map<string, string>} */
 const FIRST_WORDS = new Map(description.words
   .filter((word) => word.arguments.length || ['stop', 'start'].includes(word.role))
   .map((word) => /** @type {[string, string]} */ ([word.role, word.text])).reverse());
-/** @type {Map<string, Range>} */
-let actuators = new Map();
+/** @type {Map<string, NumberRange>} */
+let actuatorRanges = new Map();
 
 /** @param {string} robotName */
 export function setActuators(robotName) {
-  actuators = new Map(devicesOf(robotName, 'actuator').map((device) => [device.text, /** @type {Range} */ (device.arguments[0])]));
+  actuatorRanges = new Map(devicesOf(robotName, 'actuator').map((device) => [device.text, /** @type {NumberRange} */ (device.arguments[0])]));
 }
 
 /**
@@ -43,19 +43,19 @@ export function wordOnBlock(block) {
  * @param {string} kind
  * @param {string} word
  * @param {number} index of the place
- * @returns {Range}
+ * @returns {NumberRange}
  */
 export function rangeOf(kind, word, index) {
-  if (kind === 'set') return actuators.get(word) ?? ANY_RANGE;
-  const range = ARGUMENTS.get(word || impliedWordOf(kind) || kind.toUpperCase())?.[index] ?? ANY_RANGE;
+  if (kind === 'set') return actuatorRanges.get(word) ?? ANY_RANGE;
+  const range = ARGUMENT_RANGES.get(word || impliedWordOf(kind) || kind.toUpperCase())?.[index] ?? ANY_RANGE;
   return Number.isFinite(Number(range.sample)) ? range : { ...range, sample: '1' };
 }
 
 /**
  * @param {import('blockly/core').Block | null} block a number in a place of another block
- * @returns {Range}
+ * @returns {NumberRange}
  */
-export function rangeAt(block) {
+export function rangeForNumber(block) {
   const parent = block?.getParent();
   const input = parent?.inputList.find((candidate) => candidate.connection?.targetBlock() === block);
   if (!parent || !input) return ANY_RANGE;

@@ -1,7 +1,7 @@
 // What a block says, as words: for a sentence that names a block, and for who looks for one. Knows no Blockly.
 
 import { COLOURS } from './colours.js';
-import { devicesOf, KINDS, deviceName, blockLabel, REMOTE } from '../page/words.js';
+import { devicesOf, KINDS, deviceName, blockLabel, REMOTE_DEVICES } from '../page/words.js';
 import { pageState } from '../page/page_state.js';
 import { hasText, text } from '../page/texts.js';
 
@@ -18,7 +18,7 @@ const COLOUR_OF_WORD = { ELSE: 'control', ELSEIF: 'control', CM: 'move', DEG: 'm
 /** @param {string} name of a sensor or an actuator of the page's robot @returns {string} what it is called, or nothing */
 function deviceLabel(name) {
   const robotName = pageState.robotName.value;
-  const device = [...devicesOf(robotName, 'sensor'), ...REMOTE, ...devicesOf(robotName, 'actuator')].find(({ text }) => text === name);
+  const device = [...devicesOf(robotName, 'sensor'), ...REMOTE_DEVICES, ...devicesOf(robotName, 'actuator')].find(({ text }) => text === name);
   return device ? deviceName(device) : '';
 }
 
@@ -28,7 +28,7 @@ function fillLabel(label, fillings) {
 }
 
 /** @param {string} kind @param {string} word @param {string[] | null} values what is in its places; null for gaps @returns {Label} */
-export function labelOf(kind, word, values) {
+export function labelOfKind(kind, word, values) {
   const blockKind = KINDS[kind];
   if (!blockKind) return { text: '', colour: '' };
   const [wordAlone = '', unit = ''] = word.split(' ');
@@ -48,7 +48,7 @@ function labelOfValue(value) {
     const kind = kindOf(operation);
     const count = KINDS[kind]?.values.length ?? 0;
     const innerTexts = stack.splice(stack.length - count).map(({ text }) => text);
-    stack.push(operation === 'NUMBER' ? { text: operand, colour: COLOURS['numbers'] ?? '' } : labelOf(kind, operand || operation, innerTexts));
+    stack.push(operation === 'NUMBER' ? { text: operand, colour: COLOURS['numbers'] ?? '' } : labelOfKind(kind, operand || operation, innerTexts));
   }
   return stack.pop() ?? { text: GAP, colour: '' };
 }
@@ -63,7 +63,7 @@ function kindOf(word) {
 export function labelOfBlock({ kind, word, values }) {
   const placeLabels = values.map((value) => labelOfValue(value));
   if (!kind) return placeLabels[0] ?? { text: '', colour: '' };
-  return labelOf(kind === 'set' && !deviceLabel(word) ? 'call' : kind, word, placeLabels.map(({ text }) => text));
+  return labelOfKind(kind === 'set' && !deviceLabel(word) ? 'call' : kind, word, placeLabels.map(({ text }) => text));
 }
 
 /**
@@ -78,7 +78,7 @@ export function labelOfLine(line) {
   const argumentMatches = argumentText.split(',').map((part) => /^\s*(-?\d+(?:\.\d+)?)\s*(CM|DEG)?\s*$/i.exec(part));
   const unit = argumentMatches[0]?.[2]?.toUpperCase() ?? '';
   /** @type {Value[]} */
-  const values = argumentMatches.map((part, index) => (part ? [['NUMBER', part[1] ?? '']] : index === 0 && /^\s*FOREVER\b/i.test(argumentText) ? [['FOREVER', '']] : []));
+  const values = argumentMatches.map((match, index) => (match ? [['NUMBER', match[1] ?? '']] : index === 0 && /^\s*FOREVER\b/i.test(argumentText) ? [['FOREVER', '']] : []));
   return labelOfBlock({ kind, word: `${word.toUpperCase()} ${unit}`.trim(), values }).text;
 }
 
@@ -100,7 +100,7 @@ export function labelAt(programText, { line, column }) {
  * @param {string} programText @param {{line: number, column: number}} place @param {Record<string, string | number>} [values]
  * @returns {string}
  */
-export function sayOfPlace(lineKey, blockKey, programText, place, values = {}) {
+export function sentenceAtPlace(lineKey, blockKey, programText, place, values = {}) {
   return pageState.areBlocksNamed.value ? text(blockKey, { ...values, part: labelAt(programText, place) }) : text(lineKey, { ...values, line: place.line });
 }
 
@@ -116,7 +116,7 @@ export function labelOfWord(word) {
   if (colour) return { text: blockLabel(hasText(`block/${word.toLowerCase()}`) ? word.toLowerCase() : word).replace(/%1/, GAP), colour: COLOURS[colour] ?? '' };
   const kind = kindOf(word);
   if (!kind) return null;
-  return KINDS[kind]?.words.includes(word) ? { text: blockLabel(word), colour: COLOURS[KINDS[kind]?.colour ?? ''] ?? '' } : labelOf(kind, '', null);
+  return KINDS[kind]?.words.includes(word) ? { text: blockLabel(word), colour: COLOURS[KINDS[kind]?.colour ?? ''] ?? '' } : labelOfKind(kind, '', null);
 }
 
 /**
@@ -133,15 +133,15 @@ export function labelOfCode(code, spokenBlocks) {
 }
 
 /** What the compiler says, as this person works with the program. @param {import('../python.js').Finding} finding @returns {{message: string, fix: string}} */
-export function sayAsSeen(finding) {
-  return pageState.areBlocksNamed.value ? sayOnBlocks(finding) : finding;
+export function findingAsSeen(finding) {
+  return pageState.areBlocksNamed.value ? findingOnBlocks(finding) : finding;
 }
 
 /**
  * What the compiler says, for who sees blocks: its code is named as its blocks are.
  * @param {import('../python.js').Finding} finding @returns {{message: string, fix: string}}
  */
-export function sayOnBlocks({ on_blocks: { message, fix, spoken } }) {
+export function findingOnBlocks({ on_blocks: { message, fix, spoken } }) {
   const [namedMessage = '', namedFix = ''] = [message, fix].map((sentence) => sentence.replace(/`([^`]+)`/g, (_, code) => {
     const label = labelOfCode(code, spoken);
     return label ? `“${label.text}”` : code;

@@ -14,7 +14,7 @@ export class Search {
 
   /**
    * @param {Blockly.WorkspaceSvg} workspace
-   * @param {(words: string) => object[]} findBlocks what a list of blocks shows
+   * @param {(query: string) => object[]} findBlocks what a list of blocks shows
    */
   constructor(workspace, findBlocks) {
     this.#workspace = workspace;
@@ -55,13 +55,13 @@ export class Search {
   }
 
   #showResults() {
-    const words = this.#input.value.trim();
+    const query = this.#input.value.trim();
     /** @type {any} */ (this.#workspace.getToolbox())?.clearSelection();
-    if (!words) {
+    if (!query) {
       this.#flyout?.hide();
       return;
     }
-    const matches = this.#findBlocks(words);
+    const matches = this.#findBlocks(query);
     this.#flyout?.show(/** @type {any} */ (matches.length ? matches : [{ kind: 'label', text: text('search_none') }]));
   }
 

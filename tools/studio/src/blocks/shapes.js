@@ -6,7 +6,7 @@ import { ArrowField, LineField, NameField, NumberField, UnitField } from './fiel
 import { CALL_METHODS, DEF_METHODS } from './own_words.js';
 import { rangeOf } from './places.js';
 import { labelOf } from '../page/texts.js';
-import { devicesOf, KINDS, deviceName, blockLabel, pieceOf, REMOTE, tipOf } from '../page/words.js';
+import { devicesOf, KINDS, deviceName, blockLabel, pieceOf, REMOTE_DEVICES, tipOf } from '../page/words.js';
 
 /** @import { ValueKind, BlockKind } from '../page/words.js' */
 
@@ -76,7 +76,7 @@ class DeviceField extends Blockly.FieldDropdown {
   constructor(role) {
     /** @this {any} */
     super(function () {
-      const rows = [...devicesOfRole(role), ...(role === 'sensor' ? REMOTE : [])].map((device) => /** @type {[string, string]} */ ([deviceName(device), device.text]));
+      const rows = [...devicesOfRole(role), ...(role === 'sensor' ? REMOTE_DEVICES : [])].map((device) => /** @type {[string, string]} */ ([deviceName(device), device.text]));
       const currentValue = /** @type {any} */ (this).kept;
       if (currentValue && !rows.some(([, name]) => name === currentValue)) rows.push([currentValue, currentValue]);
       return rows.length ? rows : [['?', '?']];
@@ -95,12 +95,12 @@ class DeviceField extends Blockly.FieldDropdown {
  * Adds what a message says, its fields and places.
  * @param {Blockly.Block} block
  * @param {string} message
- * @param {(number: number) => Blockly.Field | string} partAt a field, or the name of a place
+ * @param {(number: number) => Blockly.Field | string} makePart a field, or the name of a place
  * @param {(name: string) => ValueKind} kindOf
  * @param {boolean} [isFolded] a question begins a row, so that it is seen beside a lesson, too
  * @param {boolean} [isBroken] so does its second value
  */
-function appendMessage(block, message, partAt, kindOf, isFolded = false, isBroken = false) {
+function appendMessage(block, message, makePart, kindOf, isFolded = false, isBroken = false) {
   let label = '';
   /** @type {Blockly.Field[]} */
   let fields = [];
@@ -120,7 +120,7 @@ function appendMessage(block, message, partAt, kindOf, isFolded = false, isBroke
     else if (!/^%\d$/.test(part)) label += part;
     else {
       flushLabel();
-      const fieldOrName = partAt(Number(part[1]));
+      const fieldOrName = makePart(Number(part[1]));
       if (typeof fieldOrName !== 'string') {
         fields.push(fieldOrName);
         continue;
@@ -262,18 +262,18 @@ const IF = {
   },
 
   /** @this {any} */
-  addOne() {
-    this.change(this.hasElse ? Math.min(this.arms + 1, MOST_ARMS) : this.arms, true);
+  addArm() {
+    this.changeArms(this.hasElse ? Math.min(this.arms + 1, MOST_ARMS) : this.arms, true);
   },
 
   /** @this {any} */
-  removeOne() {
-    if (this.arms > 1) this.change(this.arms - 1, this.hasElse);
-    else this.change(1, false);
+  removeArm() {
+    if (this.arms > 1) this.changeArms(this.arms - 1, this.hasElse);
+    else this.changeArms(1, false);
   },
 
   /** @this {any} @param {number} arms @param {boolean} hasElse */
-  change(arms, hasElse) {
+  changeArms(arms, hasElse) {
     const stateBefore = JSON.stringify(this.saveExtraState());
     this.setArms(arms, hasElse);
     const stateAfter = JSON.stringify(this.saveExtraState());
@@ -286,7 +286,7 @@ const IF = {
   init() {
     this.setArms(1, false);
     const buttonInput = this.appendDummyInput('MORE');
-    for (const [name, onClick] of [['more', () => this.addOne()], ['less', () => this.removeOne()]]) {
+    for (const [name, onClick] of [['more', () => this.addArm()], ['less', () => this.removeArm()]]) {
       const picture = new Blockly.FieldImage(`./${name}.svg`, BUTTON_UNITS, BUTTON_UNITS, tipOf(String(name)), /** @type {any} */ (onClick));
       picture.setTooltip(tipOf(String(name)));
       buttonInput.appendField(picture);
@@ -332,7 +332,7 @@ export function defineBlocks() {
 /** @param {Blockly.Block} block of a device */
 function tipOfDevice(block) {
   const name = block.getFieldValue('WORD');
-  const device = [...devicesOfRole('sensor'), ...REMOTE, ...devicesOfRole('actuator')].find((candidate) => candidate.text === name);
+  const device = [...devicesOfRole('sensor'), ...REMOTE_DEVICES, ...devicesOfRole('actuator')].find((candidate) => candidate.text === name);
   const label = device && `${name}: ${labelOf(device.labels)}${device.unit ? ` (${device.unit})` : ''}.`;
   return [label, tipOf(block.type)].filter(Boolean).join(' ');
 }

@@ -18,7 +18,7 @@ export class RunFollower {
   #runningIds = [];
   /** How the blocks were seen before the run. @type {{scale: number, x: number, y: number} | null} */
   #viewBefore = null;
-  /** How they were seen where there was more room, and how much of each stack. @type {{scale: number, x: number, y: number, width: number, seenSizes: [string, number, number][]} | null} */
+  /** How they were seen where there was more room, and how much of each stack. @type {{scale: number, x: number, y: number, width: number, visibleSizes: [string, number, number][]} | null} */
   #viewWithRoom = null;
   #isLeftAlone = false; // to somebody who scrolls
   #lastScroll_ms = -Infinity;
@@ -54,15 +54,15 @@ export class RunFollower {
       const { top, bottom, left, right } = block.getBoundingRectangleWithoutChildren();
       return new Blockly.utils.Rect(top, Math.min(bottom, top + ROW_UNITS), Math.min(left, block.getRootBlock().getRelativeToSurfaceXY().x), right);
     });
-    const view = this.#view;
-    if (!boxes.length || view.getWidth() <= 0 || boxes.every((box) => contains(box, view))) return;
+    const viewport = this.#viewport;
+    if (!boxes.length || viewport.getWidth() <= 0 || boxes.every((box) => isInside(box, viewport))) return;
     const { scale, scrollX: x, scrollY: y } = this.#workspace;
     const headBoxes = boxes.map(({ top, bottom, left, right }) => new Blockly.utils.Rect(top, bottom, left, Math.min(right, left + WORD_UNITS)));
-    const boundingBox = this.#scaleToFit(boundsOf(boxes)) < LEAST_SCALE ? boundsOf(headBoxes) : boundsOf(boxes);
-    const fittingScale = this.#scaleToFit(boundingBox);
+    const boundingBox = this.#fittingScaleOf(boundsOf(boxes)) < LEAST_SCALE ? boundsOf(headBoxes) : boundsOf(boxes);
+    const fittingScale = this.#fittingScaleOf(boundingBox);
     const isTooFar = fittingScale < LEAST_SCALE;
-    if (headBoxes.every((box) => contains(box, view)) && scale <= LEAST_SCALE) return;
-    if (isTooFar && (headBoxes.some((box) => contains(box, view)) || performance.now() - this.#lastScroll_ms < SCROLL_INTERVAL_MS)) return;
+    if (headBoxes.every((box) => isInside(box, viewport)) && scale <= LEAST_SCALE) return;
+    if (isTooFar && (headBoxes.some((box) => isInside(box, viewport)) || performance.now() - this.#lastScroll_ms < SCROLL_INTERVAL_MS)) return;
     this.#viewBefore ??= { scale, x, y };
     this.#lastScroll_ms = performance.now();
     if (fittingScale < scale) this.#workspace.setScale(Math.max(LEAST_SCALE, fittingScale));
@@ -75,49 +75,49 @@ export class RunFollower {
    * @param {() => void} resize
    */
   resizeBy(resize) {
-    const view = this.#view, { scale, scrollX: x, scrollY: y } = this.#workspace, { width } = this.#workspace.getMetricsManager().getViewMetrics();
-    const seenSizes = this.#sizesSeenIn(view);
+    const viewport = this.#viewport, { scale, scrollX: x, scrollY: y } = this.#workspace, { width } = this.#workspace.getMetricsManager().getViewMetrics();
+    const visibleSizes = this.#visibleSizesIn(viewport);
     resize();
     const isNarrower = this.#workspace.getMetricsManager().getViewMetrics().width < (this.#viewWithRoom?.width ?? width);
     const isForRobot = 'big' in document.documentElement.dataset && !('phone' in document.documentElement.dataset);
     if (isNarrower && isForRobot) {
-      this.#viewWithRoom ??= { scale, x, y, width, seenSizes };
-      this.#makeFit();
+      this.#viewWithRoom ??= { scale, x, y, width, visibleSizes };
+      this.#fitVisible();
     } else if (this.#viewWithRoom) {
-      this.#showAs(this.#viewWithRoom);
+      this.#applyView(this.#viewWithRoom);
       this.#viewWithRoom = null;
     }
   }
 
-  /** How much of each stack is seen, from its corner. @param {Blockly.utils.Rect} view @returns {[string, number, number][]} */
-  #sizesSeenIn(view) {
+  /** How much of each stack is seen, from its corner. @param {Blockly.utils.Rect} viewport @returns {[string, number, number][]} */
+  #visibleSizesIn(viewport) {
     return this.#workspace.getTopBlocks(false).flatMap((block) => {
       const { left, top, right, bottom } = block.getBoundingRectangle();
-      return view.contains(left, top) ? [[block.id, Math.min(right, view.right) - left, Math.min(bottom, view.bottom) - top]] : [];
+      return viewport.contains(left, top) ? [[block.id, Math.min(right, viewport.right) - left, Math.min(bottom, viewport.bottom) - top]] : [];
     });
   }
 
   /** Has all be seen that was seen where there was more room, if it does not fit in. */
-  #makeFit() {
-    const boxes = (this.#viewWithRoom?.seenSizes ?? []).flatMap(([id, width, height]) => {
+  #fitVisible() {
+    const boxes = (this.#viewWithRoom?.visibleSizes ?? []).flatMap(([id, width, height]) => {
       const { left, top } = this.#workspace.getBlockById(id)?.getBoundingRectangle() ?? {};
       return left === undefined || top === undefined ? [] : new Blockly.utils.Rect(top, top + height, left, left + width);
     });
-    const view = this.#view;
-    if (!this.#viewWithRoom || !boxes.length || view.getWidth() <= 0 || boxes.every((box) => contains(box, view))) return;
-    const seenBox = boundsOf(boxes);
-    this.#workspace.setScale(Math.max(LEAST_SCALE, Math.min(this.#viewWithRoom.scale, this.#scaleToFit(seenBox))));
-    this.#scrollTo(seenBox);
+    const viewport = this.#viewport;
+    if (!this.#viewWithRoom || !boxes.length || viewport.getWidth() <= 0 || boxes.every((box) => isInside(box, viewport))) return;
+    const visibleBox = boundsOf(boxes);
+    this.#workspace.setScale(Math.max(LEAST_SCALE, Math.min(this.#viewWithRoom.scale, this.#fittingScaleOf(visibleBox))));
+    this.#scrollTo(visibleBox);
   }
 
   /** @param {Blockly.utils.Rect} box @returns {number} with which all of it is seen */
-  #scaleToFit(box) {
-    const view = this.#view;
-    return this.#workspace.scale * Math.min(view.getWidth() / (box.getWidth() + 2 * EDGE_UNITS), view.getHeight() / (box.getHeight() + 2 * EDGE_UNITS));
+  #fittingScaleOf(box) {
+    const viewport = this.#viewport;
+    return this.#workspace.scale * Math.min(viewport.getWidth() / (box.getWidth() + 2 * EDGE_UNITS), viewport.getHeight() / (box.getHeight() + 2 * EDGE_UNITS));
   }
 
   /** @param {{scale: number, x: number, y: number}} view */
-  #showAs({ scale, x, y }) {
+  #applyView({ scale, x, y }) {
     const toolbox = this.#workspace.getToolbox(), openGroup = toolbox?.getSelectedItem() ?? null;
     if (scale !== this.#workspace.scale) this.#workspace.setScale(scale); // which closes what somebody has opened
     this.#workspace.scroll(x, y);
@@ -125,15 +125,15 @@ export class RunFollower {
   }
 
   /** What is seen, in the units of blocks. */
-  get #view() {
+  get #viewport() {
     const { left, top, width, height } = this.#workspace.getMetricsManager().getViewMetrics(true);
     return new Blockly.utils.Rect(top, top + height, left, left + width);
   }
 
   /** As little as has it seen. @param {Blockly.utils.Rect} box */
   #scrollTo(box) {
-    const view = this.#view, { scale } = this.#workspace;
-    const left = nearestStart(view.left, view.getWidth(), box.left, box.right), top = nearestStart(view.top, view.getHeight(), box.top, box.bottom);
+    const viewport = this.#viewport, { scale } = this.#workspace;
+    const left = nearestStart(viewport.left, viewport.getWidth(), box.left, box.right), top = nearestStart(viewport.top, viewport.getHeight(), box.top, box.bottom);
     this.#workspace.scroll(-left * scale, -top * scale);
   }
 
@@ -144,14 +144,14 @@ export class RunFollower {
     const viewBefore = this.#viewBefore;
     this.#viewBefore = null;
     if (!viewBefore) return;
-    this.#showAs(viewBefore);
-    this.#makeFit();
+    this.#applyView(viewBefore);
+    this.#fitVisible();
   }
 }
 
-/** @param {Blockly.utils.Rect} box @param {Blockly.utils.Rect} view */
-function contains(box, view) {
-  return box.left >= view.left && box.right <= view.right && box.top >= view.top && box.bottom <= view.bottom;
+/** @param {Blockly.utils.Rect} box @param {Blockly.utils.Rect} viewport */
+function isInside(box, viewport) {
+  return box.left >= viewport.left && box.right <= viewport.right && box.top >= viewport.top && box.bottom <= viewport.bottom;
 }
 
 /** @param {Blockly.utils.Rect[]} boxes */

@@ -15,16 +15,16 @@ export async function runInSlices(steps, runSlice = (slice) => slice()) {
     /** @type {IteratorResult<void, T> | undefined} */
     let step;
     runSlice(() => {
-      const end_ms = performance.now() + SLICE_MS;
-      do step = steps.next(); while (!step.done && performance.now() < end_ms);
+      const deadline_ms = performance.now() + SLICE_MS;
+      do step = steps.next(); while (!step.done && performance.now() < deadline_ms);
     });
     if (step?.done) return step.value;
-    await nextTurn();
+    await waitForNextTurn();
   }
 }
 
 /** What was asked meanwhile comes first: a message is behind it. */
-export function nextTurn() {
+export function waitForNextTurn() {
   return new Promise((resolve) => { setTimeout(resolve, 0); });
 }
 

@@ -2,7 +2,7 @@
 // it, the names that the program has, and for beginners what the open lesson speaks of, too. A group
 // is short enough to be seen at once.
 
-import { labelOf } from './said.js';
+import { labelOfKind } from './said.js';
 import { devicesOfRole } from './shapes.js';
 import { hasText, textKey, text } from '../page/texts.js';
 import { KINDS, blockLabel, pieceOf, PLAIN_WORDS, plainKind, tipOf, wordsOnBlock } from '../page/words.js';
@@ -140,7 +140,7 @@ function wordOfItem(item) {
   return /** @type {{WORD?: string}} */ (item.fields ?? {}).WORD ?? '';
 }
 
-const MOST_FOUND = 8; // are seen at once
+const MOST_RESULTS = 8; // are seen at once
 
 /** @param {string} text @returns {string} in small letters without accents */
 function withoutAccents(text) {
@@ -151,24 +151,24 @@ function withoutAccents(text) {
 const RANK_COUNT = 6;
 
 /**
- * @param {string} words that somebody looks for
+ * @param {string} query that somebody looks for
  * @param {UsedNames} usedNames
  * @returns {object[]} blocks whose label has them, or their word in the text, or what people call it, what is said of what they do, or their group
  */
-export function findItems(words, usedNames) {
-  const wantedWords = withoutAccents(words).split(/\s+/).filter(Boolean);
+export function findItems(query, usedNames) {
+  const queryWords = withoutAccents(query).split(/\s+/).filter(Boolean);
   const rankedItems = makeGroups(usedNames).flatMap(([group, items]) => items.map(([, item]) => {
     const word = wordOfItem(item);
     const choiceLabels = word ? [] : (KINDS[item.type]?.words ?? []).map(blockLabel);
-    const label = withoutAccents(` ${[labelOf(item.type, word, null).text, word, item.type, ...choiceLabels].join(' ')} `);
+    const label = withoutAccents(` ${[labelOfKind(item.type, word, null).text, word, item.type, ...choiceLabels].join(' ')} `);
     const peopleWords = ` ${wordsOfPeople(item)}`, tipText = withoutAccents(tipOf(item.type)), groupText = ` ${withoutAccents(text(textKey(`group/${group}`)))}`;
-    const ranks = wantedWords.map((wantedWord) => [
-      label.includes(` ${wantedWord} `), label.includes(` ${wantedWord}`), peopleWords.includes(` ${wantedWord}`), label.includes(wantedWord),
-      tipText.includes(wantedWord), groupText.includes(` ${wantedWord}`), true,
+    const ranks = queryWords.map((queryWord) => [
+      label.includes(` ${queryWord} `), label.includes(` ${queryWord}`), peopleWords.includes(` ${queryWord}`), label.includes(queryWord),
+      tipText.includes(queryWord), groupText.includes(` ${queryWord}`), true,
     ].indexOf(true));
     return { item, rank: Math.max(...ranks) };
   }));
-  return rankedItems.filter(({ rank }) => rank < RANK_COUNT).sort((a, b) => a.rank - b.rank).slice(0, MOST_FOUND).map(({ item }) => ({ ...item, gap: 8 }));
+  return rankedItems.filter(({ rank }) => rank < RANK_COUNT).sort((a, b) => a.rank - b.rank).slice(0, MOST_RESULTS).map(({ item }) => ({ ...item, gap: 8 }));
 }
 
 /** What people say for a block and for the words that it stands for, by the lexicon of their language. @param {ToolboxItem} item @returns {string} */

@@ -5,7 +5,7 @@ import * as Blockly from 'blockly/core';
 import { bodyConnectionOf, emptyConnectionIn } from './insert.js';
 
 const { Connection } = Blockly;
-const connectionBelow = Connection.getConnectionForOrphanedConnection.bind(Connection);
+const defaultConnectionFor = Connection.getConnectionForOrphanedConnection.bind(Connection);
 
 /**
  * Where what followed goes: into the new block, unless it brings something with it that is in it or below it.
@@ -14,8 +14,8 @@ const connectionBelow = Connection.getConnectionForOrphanedConnection.bind(Conne
  */
 Connection.getConnectionForOrphanedConnection = (newBlock, orphanConnection) => {
   const isInStack = orphanConnection.type === Blockly.ConnectionType.PREVIOUS_STATEMENT;
-  const inside = isInStack && !newBlock.getNextBlock() ? emptyConnectionIn(newBlock) : null;
-  return inside && orphanConnection.getConnectionChecker().canConnect(orphanConnection, inside, false) ? inside : connectionBelow(newBlock, orphanConnection);
+  const innerConnection = isInStack && !newBlock.getNextBlock() ? emptyConnectionIn(newBlock) : null;
+  return innerConnection && orphanConnection.getConnectionChecker().canConnect(orphanConnection, innerConnection, false) ? innerConnection : defaultConnectionFor(newBlock, orphanConnection);
 };
 
 /** Its markers give back what they have taken in: Blockly would delete that with them. */

@@ -2,41 +2,41 @@
 
 import { correction, generate } from 'lean-qr';
 import { makeButton, makeElement } from '../page/made.js';
-import { makeSign } from './signs.js';
+import { makeIcon } from './icons.js';
 import { element, setText } from '../page/elements.js';
 import { text } from '../page/texts.js';
 
-const QUIET_MODULES = 4; // white modules around a QR code
+const QUIET_ZONE_MODULES = 4; // white modules around a QR code
 
 /** A window over the whole page. STOP is in it, too: what is behind cannot be pressed. */
 class BigWindow {
-  window = makeElement('dialog');
+  dialog = makeElement('dialog');
   title = makeElement('h2');
   head = makeElement('header', '', this.title);
   body = makeElement('div');
 
   /** @param {string} id */
   constructor(id) {
-    this.window.id = id;
-    this.window.className = 'big';
+    this.dialog.id = id;
+    this.dialog.className = 'big';
     this.title.id = `${id}_title`;
-    this.window.setAttribute('aria-labelledby', this.title.id);
+    this.dialog.setAttribute('aria-labelledby', this.title.id);
     this.body.tabIndex = 0; // it may be scrolled
     this.body.setAttribute('role', 'group');
     this.body.setAttribute('aria-labelledby', this.title.id);
-    this.window.append(this.head, this.body);
-    document.body.append(this.window);
+    this.dialog.append(this.head, this.body);
+    document.body.append(this.dialog);
   }
 
   addButtons() {
     const stopButton = makeButton('class_stop_all', () => element('stop', HTMLButtonElement).click());
     stopButton.className = 'stop';
-    this.head.append(makeButton('close', () => this.window.close()), stopButton);
+    this.head.append(makeButton('close', () => this.dialog.close()), stopButton);
   }
 }
 
 /** @typedef {{key: string, title: string, stateText: string, picture: string, text: string, history: string[], isDriving: boolean, isHandUp: boolean}} PupilView */
-/** @typedef {{step: (by: number) => void, stop: (key: string) => void, next: (key: string) => void, remove: (key: string) => void, lower: (key: string) => void}} PupilActions */
+/** @typedef {{step: (offset: number) => void, stop: (key: string) => void, endTurn: (key: string) => void, remove: (key: string) => void, lowerHand: (key: string) => void}} PupilActions */
 
 export class BigPupil extends BigWindow {
   key = '';
@@ -49,13 +49,13 @@ export class BigPupil extends BigWindow {
   /** @param {PupilActions} actions */
   constructor(actions) {
     super('big_pupil');
-    const makeAction = (/** @type {import('../page/texts.js').Key} */ key, /** @type {(key: string) => void} */ action) => makeButton(key, () => action(this.key));
-    this.#lowerButton = makeAction('class_lower_hand', actions.lower);
-    this.#stopButton = makeAction('stop', actions.stop);
-    this.#nextButton = makeAction('class_next', actions.next);
-    this.#removeButton = makeAction('class_remove', actions.remove);
+    const makeActionButton = (/** @type {import('../page/texts.js').Key} */ textKey, /** @type {(key: string) => void} */ action) => makeButton(textKey, () => action(this.key));
+    this.#lowerButton = makeActionButton('class_lower_hand', actions.lowerHand);
+    this.#stopButton = makeActionButton('stop', actions.stop);
+    this.#nextButton = makeActionButton('class_next', actions.endTurn);
+    this.#removeButton = makeActionButton('class_remove', actions.remove);
     const makeStepButton = (/** @type {'left' | 'right'} */ name, /** @type {number} */ offset) => {
-      const stepButton = makeButton('', () => actions.step(offset), makeSign(name));
+      const stepButton = makeButton('', () => actions.step(offset), makeIcon(name));
       stepButton.dataset['label'] = `class_${name}`;
       stepButton.setAttribute('aria-label', text(`class_${name}`));
       return stepButton;
@@ -72,12 +72,12 @@ export class BigPupil extends BigWindow {
     this.#historyElement.tabIndex = 0;
     this.#historyElement.setAttribute('translate', 'no');
     this.body.append(paper, this.#programElement, this.#historyElement);
-    this.window.addEventListener('keydown', ({ key, target }) => {
+    this.dialog.addEventListener('keydown', ({ key, target }) => {
       if (target === this.#programElement) return;
       if (key === 'ArrowLeft') actions.step(-1);
       if (key === 'ArrowRight') actions.step(1);
     });
-    this.window.addEventListener('close', () => {
+    this.dialog.addEventListener('close', () => {
       this.key = '';
     });
   }
@@ -98,7 +98,7 @@ export class BigPupil extends BigWindow {
     this.#lowerButton.hidden = !isHandUp;
     this.#removeButton.hidden = key.startsWith('group '); // a group is left by its pupils
     this.#stopButton.hidden = this.#nextButton.hidden = !isDriving;
-    if (!this.window.open) this.window.showModal();
+    if (!this.dialog.open) this.dialog.showModal();
   }
 }
 
@@ -117,7 +117,7 @@ export class BigCode extends BigWindow {
     this.#qrCanvas.dataset['label'] = 'class_picture';
     this.#qrCanvas.setAttribute('aria-label', text('class_picture'));
     generate(location.origin, { minCorrectionLevel: correction.M })
-      .toCanvas(this.#qrCanvas, { padX: QUIET_MODULES, padY: QUIET_MODULES, on: [0, 0, 0, 255], off: [255, 255, 255, 255] });
+      .toCanvas(this.#qrCanvas, { padX: QUIET_ZONE_MODULES, padY: QUIET_ZONE_MODULES, on: [0, 0, 0, 255], off: [255, 255, 255, 255] });
     this.body.append(this.#qrCanvas, makeElement('ol', '',
       makeElement('li', '', makeElement('span', 'class_step_wifi')),
       makeElement('li', '', makeElement('span', 'class_step_open'), this.#addressElement),
@@ -127,7 +127,7 @@ export class BigCode extends BigWindow {
   /** @param {string} code */
   show(code) {
     this.setCode(code);
-    this.window.showModal();
+    this.dialog.showModal();
   }
 
   /** @param {string} code */

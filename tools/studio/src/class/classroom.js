@@ -13,7 +13,7 @@ import { isTeacher } from '../robot/host.js';
  * @property {() => boolean} keepProgram the program among the earlier ones; whether nothing of it would be lost
  * @property {(lessonNumber: number) => void} openLesson
  * @property {() => void} clearProgram takes the program off the page
- * @property {() => Promise<string>} newestRun its file, or nothing
+ * @property {() => Promise<string>} fetchNewestRunFile its file, or nothing
  * @property {(file: File) => Promise<void>} openRun plays it
  * @property {(program: {text: string, robot: string}) => boolean} putProgram another program into the editor, unless a group is to keep its own; whether it is there
  */

@@ -1,7 +1,7 @@
 // Work that is kept of who is not here goes to one pupil, whom the teacher chooses: anybody can write a name.
 
 import { makeButton, makeElement } from '../page/made.js';
-import { closedWindow } from './windows.js';
+import { makeWindow } from './windows.js';
 import { setText } from '../page/elements.js';
 import { asPlainText } from '../robot/plain_text.js';
 import { text } from '../page/texts.js';
@@ -11,7 +11,7 @@ import { text } from '../page/texts.js';
 /** @typedef {{item: HTMLElement, nameElement: HTMLElement, pupilSelect: HTMLSelectElement, giveButton: HTMLButtonElement, stateElement: HTMLElement}} KeptRowElements */
 
 export class GivingWindow {
-  window = closedWindow('class_giving', 'class_give_back');
+  dialog = makeWindow('class_giving', 'class_give_back');
   #listElement = makeElement('ul');
   #giveWork;
   /** @type {Map<string, KeptRowElements>} */
@@ -20,7 +20,7 @@ export class GivingWindow {
   /** @param {(key: string, pupil: number) => void} giveWork */
   constructor(giveWork) {
     this.#giveWork = giveWork;
-    this.window.append(makeElement('section', '', makeElement('p', 'class_give_told'), this.#listElement));
+    this.dialog.append(makeElement('section', '', makeElement('p', 'class_give_told'), this.#listElement));
   }
 
   /** @param {KeptRow[]} keptRows @param {PupilRow[]} pupils */
@@ -33,7 +33,7 @@ export class GivingWindow {
       this.#fillRow(elements, keptRow, pupils);
     }
     for (const [key, { item }] of oldRows) if (!this.#rowElements.has(key)) item.remove();
-    if (!keptRows.length) this.window.close();
+    if (!keptRows.length) this.dialog.close();
   }
 
   /** @param {string} key @returns {KeptRowElements} */

@@ -11,7 +11,7 @@ import { noteStopCount, post } from '../robot/host.js';
 import { asPlainText } from '../robot/plain_text.js';
 import { pause } from '../robot/transport.js';
 import { Membership } from './member.js';
-import { nameElements } from './together.js';
+import { makeMateElements } from './together.js';
 
 const STOP_TRIES = 5;
 
@@ -30,14 +30,14 @@ export class Group {
   #membership;
   #stopCount = 0; // that were pressed while somebody else drives
   /** Whether another pupil of the group has the robot. */
-  isDriven = false;
+  isDrivenByMate = false;
 
   /** @param {import('./classroom.js').Page} page */
   constructor(page) {
     this.#membership = new Membership(page, {
-      say: (key) => this.#showState(key),
+      onStateChange: (key) => this.#showState(key),
       onBug: (error) => setText(this.#statusElement, bugSentence(error)),
-      onOthers: (others) => this.#matesElement.replaceChildren(...nameElements(others.map((other) => ({ ...other, name: asPlainText(other.name) })))),
+      onMatesChange: (mates) => this.#matesElement.replaceChildren(...makeMateElements(mates.map((mate) => ({ ...mate, name: asPlainText(mate.name) })))),
     });
     this.#section = makeElement('section', '', makeElement('h2', 'group'), this.#joinForm, this.#groupList, this.#statusElement, this.#matesElement, this.#leaveButton);
     this.#section.id = 'class_group';
@@ -72,12 +72,12 @@ export class Group {
     if (pageState.sideId.value === this.#sideButton.id) showSide('side_real'); // where one comes in again
     this.#sideButton.hidden = true;
     this.#membership.endMembership();
-    this.isDriven = false;
+    this.isDrivenByMate = false;
   }
 
   /** @param {GroupRow[]} groups that there are @param {string} driverName who has the robot of this one */
   showGroups(groups, driverName) {
-    this.isDriven = driverName !== '';
+    this.isDrivenByMate = driverName !== '';
     if (this.#membership.isInGroup) return;
     const groupsKey = JSON.stringify(groups);
     if (this.#groupList.dataset['groups'] === groupsKey) return;
@@ -87,7 +87,7 @@ export class Group {
 
   leave() {
     this.#membership.leave();
-    this.isDriven = false;
+    this.isDrivenByMate = false;
   }
 
   /** @param {string} name */
@@ -97,7 +97,7 @@ export class Group {
 
   /** Stops the robot of the group where another pupil drives it; where this page does, that page's own STOP does. */
   async #stop() {
-    if (!this.isDriven) return;
+    if (!this.isDrivenByMate) return;
     const group_stops = ++this.#stopCount;
     for (let tryNumber = 0; tryNumber < STOP_TRIES; tryNumber += 1) {
       try {

@@ -9,8 +9,8 @@ import { SharedEditor } from './together.js';
 
 const STORAGE_KEY = 'tiniscript.group'; // what a page that is loaded again goes on with
 
-/** @typedef {import('./together.js').Other} Other */
-/** @typedef {{say: (key: import('../page/texts.js').Key | '') => void, onBug: (why: unknown) => void, onOthers: (others: Other[]) => void}} MembershipListener `say` is told of joining and leaving, too */
+/** @typedef {import('./together.js').Mate} Mate */
+/** @typedef {{onStateChange: (key: import('../page/texts.js').Key | '') => void, onBug: (error: unknown) => void, onMatesChange: (mates: Mate[]) => void}} MembershipListener `onStateChange` is told of joining and leaving, too */
 
 export class Membership {
   #page;
@@ -50,28 +50,28 @@ export class Membership {
       const answer = await post({ ...request, text: work.text, ...(storedPage && { before: storedPage.name }) });
       if (answer.failure) {
         storeText(STORAGE_KEY, '', 'sessionStorage');
-        this.#listener.say(textKey(answer.failure));
+        this.#listener.onStateChange(textKey(answer.failure));
         return;
       }
       const sharedEditor = this.#sharedEditor = new SharedEditor(python, editor, {
-        left: () => {
+        onLeft: () => {
           this.endMembership();
-          this.#listener.say('group_left');
+          this.#listener.onStateChange('group_left');
         },
-        fails: (error) => {
+        onBug: (error) => {
           this.endMembership();
           this.#listener.onBug(error);
         },
-        others: (others) => this.#listener.onOthers(others),
-        refused: () => pageState.note.set(text('group_refused')),
-        places: (places) => views.showMates(places),
-        runs: (event) => panel.onGroupEvent(event),
+        onMatesChange: (mates) => this.#listener.onMatesChange(mates),
+        onRefusal: () => pageState.note.set(text('group_refused')),
+        onMatesMove: (places) => views.showMates(places),
+        onRobotEvent: (event) => panel.onGroupEvent(event),
         isBusy: () => views.isBusy,
-        answers: (isHeard) => this.#listener.say(isHeard ? 'group_in' : 'class_silent'),
-        keep: (page) => storeText(STORAGE_KEY, JSON.stringify({ request, page }), 'sessionStorage'),
+        onRequestEnd: (isAnswered) => this.#listener.onStateChange(isAnswered ? 'group_in' : 'class_silent'),
+        storePage: (page) => storeText(STORAGE_KEY, JSON.stringify({ request, page }), 'sessionStorage'),
       });
       pageState.groupName.set(String(answer.group));
-      this.#listener.say('group_in');
+      this.#listener.onStateChange('group_in');
       await sharedEditor.showProgram(answer, storedPage ?? null).then(() => {
         if (sharedEditor !== this.#sharedEditor) return; // it was left meanwhile
         views.join(sharedEditor);
@@ -81,7 +81,7 @@ export class Membership {
         this.#listener.onBug(error);
       });
     } catch {
-      this.#listener.say('class_silent');
+      this.#listener.onStateChange('class_silent');
     } finally {
       this.isJoining = false;
     }
@@ -101,7 +101,7 @@ export class Membership {
     delete document.documentElement.dataset['group'];
     storeText(STORAGE_KEY, '', 'sessionStorage');
     pageState.groupName.set('');
-    this.#listener.onOthers([]);
-    this.#listener.say('');
+    this.#listener.onMatesChange([]);
+    this.#listener.onStateChange('');
   }
 }

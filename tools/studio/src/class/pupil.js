@@ -8,12 +8,12 @@
 import { makeButton, makeLabel, makeElement } from '../page/made.js';
 import { element, setHidden, setText } from '../page/elements.js';
 import { setToken, noteStopCount, post } from '../robot/host.js';
-import { storeDone, loadDoneLessons } from '../lesson/progress.js';
+import { storeDoneLesson, loadDoneLessons } from '../lesson/progress.js';
 import { asPlainText } from '../robot/plain_text.js';
 import { ConnectionFailure } from '../robot/transport.js';
 import { Group } from './group.js';
 import { giveRun } from './run.js';
-import { makeSign } from './signs.js';
+import { makeIcon } from './icons.js';
 import { clockText } from './clock.js';
 import { pageState } from '../page/page_state.js';
 import { text } from '../page/texts.js';
@@ -24,7 +24,7 @@ import { forgetAll, storeText, loadText } from '../page/kept.js';
 
 const TOKEN_KEY = 'tiniscript.pupil';
 const LAST_TOKEN_KEY = 'tiniscript.pupil_before'; // the token of the last page here: work belongs to it
-const OPENED_KEY = 'tiniscript.opened'; // the key of what the teacher gave to all and this pupil opened last
+const OPENED_HANDOUT_KEY = 'tiniscript.opened'; // the key of what the teacher gave to all and this pupil opened last
 const POLL_MS = 1000;
 const QUICK_POLL_MS = 300; // while the next turn may be one's own
 
@@ -32,7 +32,7 @@ const QUICK_POLL_MS = 300; // while the next turn may be one's own
 /** @typedef {{key: string, lesson: number, text: string, robot: string}} Handout what the teacher gives to all: a lesson by its number, or a program */
 /** @typedef {{handout?: Handout, place: number, waiting: number, robots: number, robot: string, left_s: number, name: string, hand: boolean, given?: GivenWork, over?: string, groups?: import('./group.js').GroupRow[], driver?: string, run?: number, stops?: number}} PupilState */
 
-function newStayState() {
+function makeStayState() {
   return {
     wantsRobot: /** @type {boolean | null} */ (null), // a robot, told at the next look
     isHandWanted: /** @type {boolean | null} */ (null), // help, told at the next look
@@ -52,7 +52,7 @@ export class Pupil {
   #page;
   #boxElement = element('class_pupil', HTMLElement);
   /** Where the box is until the pupil has joined: whoever opens the class's address sees nothing before it. */
-  #entry = element('class_entry', HTMLElement);
+  #entryElement = element('class_entry', HTMLElement);
   #codeInput = makeElement('input');
   #nameInput = makeElement('input');
   #joinForm = makeElement('form', '', makeLabel('class_code', this.#codeInput), makeLabel('class_name', this.#nameInput), makeElement('button', 'class_join'));
@@ -68,16 +68,16 @@ export class Pupil {
   #handButton = makeButton('', () => {
     this.#stayState.isHandWanted = !this.#isHandUp;
     this.#poll();
-  }, makeSign('hand', 26));
+  }, makeIcon('hand', 26));
   #isHandUp = false;
   /** It waits for a press, as nothing may come between a pupil and what is being written, dragged, run or edited together. */
   #handoutButton = makeButton('class_handout_open', () => this.#openHandout());
   #handoutSentence = makeElement('span');
   #handoutBox = makeElement('p', '', this.#handoutSentence, this.#handoutButton);
-  #openedKey = loadText(OPENED_KEY, 'sessionStorage');
+  #openedHandoutKey = loadText(OPENED_HANDOUT_KEY, 'sessionStorage');
   #group;
   #isJoining = false;
-  #stayState = newStayState(); // in one class: an answer of the one before is none of the next one
+  #stayState = makeStayState(); // in one class: an answer of the one before is none of the next one
   #pollTimer = 0;
 
   /** @param {import('./classroom.js').Page} page */
@@ -90,7 +90,7 @@ export class Pupil {
     element('stop', HTMLButtonElement).before(this.#handButton);
     this.#handoutBox.id = 'class_handout';
     this.#handoutSentence.setAttribute('role', 'status');
-    this.#entry.before(this.#handoutBox);
+    this.#entryElement.before(this.#handoutBox);
     this.#showHandout();
     this.#showHand(false);
     for (const field of [this.#codeInput, this.#nameInput]) {
@@ -109,7 +109,7 @@ export class Pupil {
     });
     this.#boxElement.append(this.#joinForm, this.#statusElement, makeElement('p', '', this.#askButton, this.#quitButton, this.#connectButton, this.#ownRobotButton));
     this.#boxElement.hidden = false;
-    pageState.language.subscribe(() => this.#sayStatus());
+    pageState.language.subscribe(() => this.#updateStatusText());
     this.#group = new Group(page);
     const token = loadText(TOKEN_KEY, 'sessionStorage');
     if (token) this.#onJoined(token);
@@ -137,7 +137,7 @@ export class Pupil {
     setToken(token);
     storeText(TOKEN_KEY, token, 'sessionStorage'); // without a storage, a reload joins anew
     storeText(LAST_TOKEN_KEY, token);
-    this.#joinForm.hidden = this.#entry.hidden = true;
+    this.#joinForm.hidden = this.#entryElement.hidden = true;
     element('class_place', HTMLElement).append(this.#boxElement);
     this.#handButton.hidden = false;
     this.#group.enter();
@@ -147,15 +147,15 @@ export class Pupil {
   /** @param {import('../page/texts.js').Key} key */
   #leaveClass(key) {
     clearTimeout(this.#pollTimer);
-    this.#stayState = newStayState();
+    this.#stayState = makeStayState();
     this.#showHandout();
     this.#showHand(false);
     this.#group.exit();
     setToken('');
     storeText(TOKEN_KEY, '', 'sessionStorage');
-    this.#setOpened('');
-    this.#joinForm.hidden = this.#entry.hidden = element('class_entry_title', HTMLElement).hidden = false;
-    this.#entry.append(this.#boxElement);
+    this.#setOpenedHandout('');
+    this.#joinForm.hidden = this.#entryElement.hidden = element('class_entry_title', HTMLElement).hidden = false;
+    this.#entryElement.append(this.#boxElement);
     this.#askButton.hidden = this.#quitButton.hidden = this.#connectButton.hidden = this.#handButton.hidden = true;
     this.#showStatus(key);
   }
@@ -175,7 +175,7 @@ export class Pupil {
     const { wantsRobot, isHandWanted } = stay, takenWork = stay.isTakenUnconfirmed ? stay.takenWork : null;
     const fields = takenWork ? stay.sentFields : this.#currentFields(); // two programs may be too large
     /** @type {Record<string, unknown>} */
-    const request = { do: 'here', opened: this.#openedKey };
+    const request = { do: 'here', opened: this.#openedHandoutKey };
     if (takenWork) request['took'] = { key: takenWork.key, text: takenWork.text };
     if (wantsRobot !== null) request['wants'] = wantsRobot;
     if (isHandWanted !== null) request['hand'] = isHandWanted;
@@ -197,13 +197,13 @@ export class Pupil {
       }
       this.#showState(answer);
       if (takenWork) stay.isTakenUnconfirmed = false;
-      this.#takeGiven(answer.given);
+      this.#takeGivenWork(answer.given);
       const { handout = null } = answer;
-      stay.handout = handout?.key === this.#openedKey ? null : handout; // the class has yet to hear that it was opened
+      stay.handout = handout?.key === this.#openedHandoutKey ? null : handout; // the class has yet to hear that it was opened
       this.#showHandout();
       if (answer.run && answer.run !== stay.runNumber) {
         stay.runNumber = answer.run;
-        giveRun(answer.run, this.#page.newestRun).catch(() => {}); // the teacher asks again
+        giveRun(answer.run, this.#page.fetchNewestRunFile).catch(() => {}); // the teacher asks again
       }
       if (answer.place > 0 && answer.place <= answer.robots) wait_ms = QUICK_POLL_MS;
       if (stay.wantsRobot !== null || stay.isHandWanted !== null) wait_ms = 0;
@@ -236,7 +236,7 @@ export class Pupil {
    * the class hears it, for a group may keep its own program, and anybody in it may replace the one on the screen.
    * @param {GivenWork | undefined} work
    */
-  #takeGiven(work) {
+  #takeGivenWork(work) {
     if (!work || this.#group.isJoining) return; // the group's program is about to replace what is on the screen
     const stay = this.#stayState;
     const program = { text: work.text, robot: isRobot(work.robot) ? work.robot : this.#work.robot, name: '' };
@@ -245,7 +245,7 @@ export class Pupil {
     const isKept = stay.isTakenUnconfirmed = storeVersion(program);
     if (!isNew) return;
     stay.takenWork = work;
-    for (const name of work.lessons) storeDone(name);
+    for (const name of work.lessons) storeDoneLesson(name);
     if (isShown || isKept) element('note', HTMLElement).textContent = text(isShown ? 'class_given' : 'class_given_kept');
   }
 
@@ -267,16 +267,16 @@ export class Pupil {
       if (!isShown && !storeVersion(program)) return;
       pageState.note.set(text(!isShown ? 'class_handout_kept' : wasShipped ? 'class_handout_program' : 'class_handout_opened'));
     }
-    this.#setOpened(handout.key);
+    this.#setOpenedHandout(handout.key);
     this.#stayState.handout = null;
     this.#showHandout();
     this.#poll(); // the teacher sees it
   }
 
   /** @param {string} key of what the teacher gave to all; nothing for the next pupil at this page */
-  #setOpened(key) {
-    this.#openedKey = key;
-    storeText(OPENED_KEY, key, 'sessionStorage');
+  #setOpenedHandout(key) {
+    this.#openedHandoutKey = key;
+    storeText(OPENED_HANDOUT_KEY, key, 'sessionStorage');
   }
 
   /** @param {boolean} isHandUp */
@@ -298,9 +298,9 @@ export class Pupil {
     this.#stayState.queuePlace = queuePlace;
     this.#askButton.hidden = queuePlace >= 0;
     this.#quitButton.hidden = queuePlace <= 0;
-    const timeLeft = clockText(left_s);
+    const timeLeftText = clockText(left_s);
     const key = queuePlace > 0 ? 'class_place' : queuePlace < 0 ? 'class_in' : driverName ? 'group_drives' : waitingCount ? 'class_turn' : 'class_turn_alone';
-    this.#showStatus(key, { place: queuePlace, waiting: waitingCount, robots: robotCount, time: timeLeft, name: asPlainText(driverName || name), robot: asPlainText(robotName) });
+    this.#showStatus(key, { place: queuePlace, waiting: waitingCount, robots: robotCount, time: timeLeftText, name: asPlainText(driverName || name), robot: asPlainText(robotName) });
     if (isTurnNew && this.#panel.isFree) {
       element('side_real', HTMLButtonElement).click();
       this.#panel.connectByHost();
@@ -320,11 +320,11 @@ export class Pupil {
   /** @param {import('../page/texts.js').Key} key @param {Record<string, string | number>} values */
   #showStatus(key, values = {}) {
     this.#status = { key, values };
-    this.#sayStatus();
+    this.#updateStatusText();
     document.documentElement.dataset['pupil'] = key;
   }
 
-  #sayStatus() {
+  #updateStatusText() {
     setText(this.#statusElement, text(this.#status.key, this.#status.values));
   }
 }

@@ -7,9 +7,9 @@ const PART_CHARACTERS = 60_000; // characters: each has three bytes at most
 const POLL_MS = 300;
 const ANSWER_LIMIT_MS = 15_000;
 
-/** Gives it to the class. @param {number} questionNumber the number of the question @param {() => Promise<string>} newestRunFile its file, or nothing */
-export async function giveRun(questionNumber, newestRunFile) {
-  const file = await newestRunFile().catch(() => '');
+/** Gives it to the class. @param {number} questionNumber the number of the question @param {() => Promise<string>} fetchNewestRunFile its file, or nothing */
+export async function giveRun(questionNumber, fetchNewestRunFile) {
+  const file = await fetchNewestRunFile().catch(() => '');
   for (let offset = 0; offset === 0 || offset < file.length; offset += PART_CHARACTERS) {
     const part = file.slice(offset, offset + PART_CHARACTERS);
     await post({ do: 'run', asked: questionNumber, from: offset, part, is_last: offset + PART_CHARACTERS >= file.length });
@@ -18,8 +18,8 @@ export async function giveRun(questionNumber, newestRunFile) {
 
 /** Asks a pupil's page for it; nothing where it has none, null where it does not answer. @param {number} pupilNumber @returns {Promise<string | null>} */
 export async function fetchRun(pupilNumber) {
-  const end_ms = performance.now() + ANSWER_LIMIT_MS;
-  for (let isFirst = true; performance.now() < end_ms; isFirst = false) {
+  const deadline_ms = performance.now() + ANSWER_LIMIT_MS;
+  for (let isFirst = true; performance.now() < deadline_ms; isFirst = false) {
     const { run } = await post({ do: 'class_run', pupil: pupilNumber, asks: isFirst });
     if (typeof run === 'string') return run;
     await new Promise((resolve) => { setTimeout(resolve, POLL_MS); });

@@ -10,10 +10,10 @@ import { openWork, saveWork } from './keeping.js';
 import { Membership } from './member.js';
 import { fetchRun } from './run.js';
 import { makeButton, makeLabel, makeElement } from '../page/made.js';
-import { makeSign } from './signs.js';
+import { makeIcon } from './icons.js';
 import { clockText } from './clock.js';
 import { robotText, Wall } from './wall.js';
-import { closedWindow } from './windows.js';
+import { makeWindow } from './windows.js';
 import { element, setText } from '../page/elements.js';
 import { bugSentence } from '../page/faults.js';
 import { fetchPorts, post } from '../robot/host.js';
@@ -36,20 +36,20 @@ const MOST_NAMED_HANDS = 4; // hands that are named above the wall
 
 export class Teacher {
   #wall = new Wall({
-    see: (key) => this.#showBigPupil(key), remove: (key) => this.#removeTile(key), lower: (key) => this.#requestForTile('class_hand', key), play: (key) => this.#playRun(key),
-    join: (key) => this.#visitGroup(key),
+    enlarge: (key) => this.#showBigPupil(key), remove: (key) => this.#removeTile(key), lowerHand: (key) => this.#requestForTile('class_hand', key), playRun: (key) => this.#playRun(key),
+    visitGroup: (key) => this.#visitGroup(key),
   });
   #page;
   #blockPictures;
   #bigPupil = new BigPupil({
     step: (offset) => this.#stepTile(offset),
     stop: (key) => this.#requestForTile('class_stop', key),
-    next: (key) => this.#requestForTile('class_next', key),
+    endTurn: (key) => this.#requestForTile('class_next', key),
     remove: (key) => {
       this.#removeTile(key);
-      this.#bigPupil.window.close();
+      this.#bigPupil.dialog.close();
     },
-    lower: (key) => this.#requestForTile('class_hand', key),
+    lowerHand: (key) => this.#requestForTile('class_hand', key),
   });
   #bigCode = new BigCode();
   #codeElement = makeElement('strong');
@@ -61,29 +61,29 @@ export class Teacher {
   #minutesInput = makeNumberInput('1', '60');
   #placesInput = makeNumberInput('1', '60');
   #erasesInput = makeElement('input');
-  #settingsWindow = closedWindow('class_window', 'class_settings');
+  #settingsWindow = makeWindow('class_window', 'class_settings');
   /** @type {HandoutWindow} */
   #handoutWindow;
   #fileInput = makeElement('input');
   #endButton = makeConfirmedButton('class_end', () => this.#request({ do: 'class_over', erases: this.#erasesInput.checked }));
   #givingWindow = new GivingWindow((key, pupilNumber) => this.#request({ do: 'class_give_back', key, pupil: pupilNumber }));
-  #giveBackButton = makeButton('class_give_back', () => this.#givingWindow.window.showModal());
-  #anewButton = makeConfirmedButton('class_anew', () => this.#request({ do: 'class_anew' }));
+  #giveBackButton = makeButton('class_give_back', () => this.#givingWindow.dialog.showModal());
+  #beginAnewButton = makeConfirmedButton('class_anew', () => this.#request({ do: 'class_anew' }));
   #leaveButton = makeButton('', () => this.#leaveGroup());
   /** @type {Membership} */
   #membership;
-  #visitKey = ''; // of the group in which the teacher is
+  #visitTextKey = ''; // of what is said of the group in which the teacher is
   /** @type {ClassState | null} */
   #classState = null;
   /** @type {Map<string, KnownProgram>} */
   #knownPrograms = new Map();
   /** @type {Map<string, number>} the version that is being fetched */
-  #fetchedVersions = new Map();
+  #pendingVersions = new Map();
   #notice = ''; // of a file or a run, until the next one
-  #playedKey = ''; // whose run is asked for
-  #timer = 0;
+  #pendingRunKey = ''; // whose run is asked for
+  #pollTimer = 0;
   #requestCount = 0; // the number of the newest request, and of the newest whose answer is seen
-  #lastAnswered = 0;
+  #lastAnsweredNumber = 0;
 
   /** @param {import('./classroom.js').Page} page */
   constructor(page) {
@@ -91,9 +91,9 @@ export class Teacher {
     this.#blockPictures = new Pictures(page.python, 'class_blocks');
     this.#handoutWindow = new HandoutWindow(page, (handout) => this.#request({ do: 'class_hand_out', ...handout }));
     this.#membership = new Membership(page, {
-      say: (key) => this.#showVisit(key),
+      onStateChange: (key) => this.#showVisit(key),
       onBug: (error) => pageState.note.set(bugSentence(error)),
-      onOthers: () => {}, // their names are beside the lines
+      onMatesChange: () => {}, // their names are beside the lines
     });
     const sideButton = element('side_class', HTMLButtonElement);
     sideButton.hidden = false;
@@ -105,13 +105,13 @@ export class Teacher {
     this.#emptyNotice.id = 'class_empty';
     this.#minutesInput.addEventListener('change', () => this.#request({ do: 'class_turn', seconds: 60 * wholeNumberOf(this.#minutesInput) }));
     this.#placesInput.addEventListener('change', () => this.#request({ do: 'class_places', places: wholeNumberOf(this.#placesInput) }));
-    this.#addHead();
+    this.#addHeadButtons();
     this.#addSettings();
-    this.#giveBackButton.hidden = this.#anewButton.hidden = true;
+    this.#giveBackButton.hidden = this.#beginAnewButton.hidden = true;
     const settingsButton = makeButton('class_settings', () => this.#openSettings());
     settingsButton.id = 'class_settings';
     const handoutButton = makeButton('class_hand_out', () => this.#openHandoutWindow());
-    const bar = makeElement('div', '', this.#statusElement, this.#robotChips, this.#giveBackButton, this.#anewButton, handoutButton, settingsButton);
+    const bar = makeElement('div', '', this.#statusElement, this.#robotChips, this.#giveBackButton, this.#beginAnewButton, handoutButton, settingsButton);
     bar.id = 'class_bar';
     element('class', HTMLElement).append(bar, this.#wall.element, this.#emptyNotice);
     pageState.language.subscribe(() => this.#updateLanguage());
@@ -123,7 +123,7 @@ export class Teacher {
   }
 
   /** Into the page's head: how pupils come in, and STOP for all, with its answer beside it. */
-  #addHead() {
+  #addHeadButtons() {
     const head = /** @type {HTMLElement} */ (document.querySelector('body > header'));
     const stopButton = element('stop', HTMLButtonElement);
     for (const button of [stopButton, element('programs_stop', HTMLButtonElement)]) { // which stop the same robots
@@ -168,9 +168,9 @@ export class Teacher {
     this.#settingsWindow.showModal();
   }
 
-  /** @param {boolean} isWall else the program and the virtual robot */
-  #showWall(isWall) {
-    document.documentElement.toggleAttribute('data-wall', isWall);
+  /** @param {boolean} isShown else the program and the virtual robot */
+  #showWall(isShown) {
+    document.documentElement.toggleAttribute('data-wall', isShown);
     dispatchEvent(new Event('resize'));
   }
 
@@ -196,19 +196,19 @@ export class Teacher {
     const groupName = asPlainText(pageState.groupName.value);
     this.#leaveButton.hidden = !this.#membership.isInGroup;
     setText(this.#leaveButton, text('class_leave_of', { name: groupName }));
-    if (this.#visitKey === key) return;
-    this.#visitKey = key;
+    if (this.#visitTextKey === key) return;
+    this.#visitTextKey = key;
     pageState.note.set(key ? text(key, { group: groupName }) : '');
   }
 
   /** Plays a pupil's newest run here. @param {string} key */
   async #playRun(key) {
     const pupilRow = this.#pupilRowOf(key);
-    if (!pupilRow || this.#playedKey) return;
-    this.#playedKey = key;
+    if (!pupilRow || this.#pendingRunKey) return;
+    this.#pendingRunKey = key;
     this.#setNotice(text('class_run_asked', { name: asPlainText(pupilRow.name) }));
     const run = await fetchRun(pupilRow.number).catch(() => null);
-    this.#playedKey = '';
+    this.#pendingRunKey = '';
     this.#setNotice(run ? '' : text(run === null ? 'class_run_silent' : 'class_run_none', { name: asPlainText(pupilRow.name) }));
     if (!run) return;
     this.#showStudio();
@@ -229,28 +229,28 @@ export class Teacher {
 
   /** The pupils of a tile, which are several where it is a group's. @param {string} key */
   #pupilsOfTile(key) {
-    const { pupils: pupilRowsOf = [], groups = [] } = this.#classState ?? {};
+    const { pupils: pupilRows = [], groups = [] } = this.#classState ?? {};
     const memberNumbers = groups.find((group) => groupTileKey(group.key) === key)?.pupils;
-    return pupilRowsOf.filter(({ number }) => (memberNumbers ? memberNumbers.includes(number) : pupilTileKey(number) === key));
+    return pupilRows.filter(({ number }) => (memberNumbers ? memberNumbers.includes(number) : pupilTileKey(number) === key));
   }
 
   /** @param {Record<string, unknown>} fields */
   async #request(fields) {
-    clearTimeout(this.#timer);
+    clearTimeout(this.#pollTimer);
     this.#requestCount += 1;
     const requestNumber = this.#requestCount;
     try {
       const state = /** @type {ClassState} */ (await post(fields));
-      if (requestNumber < this.#lastAnswered) return; // an older state than is seen
-      this.#lastAnswered = requestNumber;
+      if (requestNumber < this.#lastAnsweredNumber) return; // an older state than is seen
+      this.#lastAnsweredNumber = requestNumber;
       this.#showState(state);
       if (state.over) return;
     } catch {
       if (this.#classState?.over) return; // it ends with its class
       this.#sayInBar('why_host_gone');
     }
-    clearTimeout(this.#timer);
-    this.#timer = window.setTimeout(() => this.#request({ do: 'class' }), POLL_MS);
+    clearTimeout(this.#pollTimer);
+    this.#pollTimer = window.setTimeout(() => this.#request({ do: 'class' }), POLL_MS);
   }
 
   /** @param {string} action @param {string} key */
@@ -316,20 +316,20 @@ export class Teacher {
     if (overReason) {
       this.#sayInBar('class_over');
       this.#settingsWindow.close();
-      this.#bigPupil.window.close();
-      this.#givingWindow.window.close();
-      this.#handoutWindow.window.close();
+      this.#bigPupil.dialog.close();
+      this.#givingWindow.dialog.close();
+      this.#handoutWindow.dialog.close();
       element('class', HTMLElement).replaceChildren(this.#statusElement); // nobody is left to do the rest
       return;
     }
-    const hands = pupils.filter(({ hand }) => hand).sort((first, second) => first.hand - second.hand);
-    const handNames = hands.slice(0, MOST_NAMED_HANDS).map(({ name }) => asPlainText(name)).join(', ') + (hands.length > MOST_NAMED_HANDS ? ` +${hands.length - MOST_NAMED_HANDS}` : '');
+    const raisedHands = pupils.filter(({ hand }) => hand).sort((first, second) => first.hand - second.hand);
+    const handNames = raisedHands.slice(0, MOST_NAMED_HANDS).map(({ name }) => asPlainText(name)).join(', ') + (raisedHands.length > MOST_NAMED_HANDS ? ` +${raisedHands.length - MOST_NAMED_HANDS}` : '');
     const count = text('class_count', { pupils: pupils.length, robots: robots.length, waiting: pupils.filter(({ place: queuePlace }) => queuePlace).length });
-    setText(this.#statusElement, [count, hands.length ? text('class_hands', { names: handNames }) : '', handout ? text(handout.lesson ? 'class_opened_lesson' : 'class_opened_program', { number: handout.lesson, opened: handout.opened, pupils: pupils.length }) : '', this.#notice || (goes_on ? text('class_goes_on') : '')].filter(Boolean).join(' '));
+    setText(this.#statusElement, [count, raisedHands.length ? text('class_hands', { names: handNames }) : '', handout ? text(handout.lesson ? 'class_opened_lesson' : 'class_opened_program', { number: handout.lesson, opened: handout.opened, pupils: pupils.length }) : '', this.#notice || (goes_on ? text('class_goes_on') : '')].filter(Boolean).join(' '));
     document.documentElement.dataset['teacher'] = 'class_count';
     this.#giveBackButton.hidden = !keptRows.length || !pupils.length;
     this.#givingWindow.show(keptRows, pupils);
-    this.#anewButton.hidden = !goes_on;
+    this.#beginAnewButton.hidden = !goes_on;
     this.#showRobots(robots);
     const tiles = this.#makeTiles();
     this.#emptyNotice.hidden = tiles.length > 0;
@@ -357,18 +357,18 @@ export class Teacher {
 
   /** @param {RobotRow[]} robots */
   #showRobots(robots) {
-    const rows = robots.map((robot) => ({ ...robot, title: asPlainText(robot.name || robot.port), said: robot.pupil ? text('class_held', { name: asPlainText(robot.pupil), time: clockText(robot.left_s) }) : text('class_free') }));
+    const rows = robots.map((robot) => ({ ...robot, title: asPlainText(robot.name || robot.port), stateText: robot.pupil ? text('class_held', { name: asPlainText(robot.pupil), time: clockText(robot.left_s) }) : text('class_free') }));
     const chipsKey = JSON.stringify(rows.map(({ title, pupil: pupilName }) => [title, Boolean(pupilName)]));
     if (this.#robotChips.dataset['seen'] !== chipsKey) {
       this.#robotChips.dataset['seen'] = chipsKey;
       this.#robotChips.replaceChildren(...rows.map(({ title, pupil: pupilName }) => {
-        const chip = makeElement('li', '', makeSign('robot', 20), makeElement('strong', '', title), makeElement('span'));
+        const chip = makeElement('li', '', makeIcon('robot', 20), makeElement('strong', '', title), makeElement('span'));
         chip.classList.toggle('held', Boolean(pupilName));
         return chip;
       }));
       this.#robotChips.hidden = !rows.length;
     }
-    rows.forEach(({ said: stateText }, index) => setText(/** @type {HTMLElement} */ (this.#robotChips.children[index]?.lastElementChild), stateText));
+    rows.forEach(({ stateText }, index) => setText(/** @type {HTMLElement} */ (this.#robotChips.children[index]?.lastElementChild), stateText));
     const portsKey = JSON.stringify(robots.map(({ port: portId, name }) => [portId, name]));
     if (this.#robotList.dataset['seen'] === portsKey) return;
     this.#robotList.dataset['seen'] = portsKey;
@@ -378,8 +378,8 @@ export class Teacher {
 
   /** Fetches a program that is another one now, and wants its picture. @param {string} key @param {number} version */
   async #fetchProgram(key, version) {
-    if (this.#knownPrograms.get(key)?.version === version || this.#fetchedVersions.get(key) === version) return;
-    this.#fetchedVersions.set(key, version);
+    if (this.#knownPrograms.get(key)?.version === version || this.#pendingVersions.get(key) === version) return;
+    this.#pendingVersions.set(key, version);
     try {
       const pupil = this.#pupilRowOf(key);
       const owner = pupil ? { pupil: pupil.number } : key.startsWith(GROUP_PREFIX) ? { group: key.slice(GROUP_PREFIX.length) } : { key: keptWorkKey(key) };
@@ -394,7 +394,7 @@ export class Teacher {
     } catch {
       // it is asked for again, or the pupil has gone
     } finally {
-      this.#fetchedVersions.delete(key);
+      this.#pendingVersions.delete(key);
     }
   }
 
@@ -402,7 +402,7 @@ export class Teacher {
   #showBigPupil(key) {
     const tile = this.#makeTiles().find((candidate) => candidate.key === key);
     if (!tile) {
-      this.#bigPupil.window.close();
+      this.#bigPupil.dialog.close();
       return;
     }
     const { pupil } = tile;
@@ -410,7 +410,7 @@ export class Teacher {
     const drivesText = robotText(pupil);
     const lessonsText = text('class_lessons', { done: tile.lessons.length, all: this.#classState?.lessons ?? 0 });
     this.#bigPupil.show({
-      key, title: asPlainText(tile.name), stateText: [drivesText, lessonsText].filter(Boolean).join(', '), picture: this.#wall.pictureOf(key), text: program?.text || text('class_empty'), history: program?.history ?? [],
+      key, title: asPlainText(tile.name), stateText: [drivesText, lessonsText].filter(Boolean).join(', '), picture: this.#wall.pictureAddressOf(key), text: program?.text || text('class_empty'), history: program?.history ?? [],
       isDriving: Boolean(drivesText), isHandUp: Boolean(pupil?.hand),
     });
   }
@@ -432,7 +432,7 @@ export class Teacher {
 
 /** A button of what cannot be taken back: it acts at the second press. @param {'class_end' | 'class_anew'} key @param {() => void} onConfirm */
 function makeConfirmedButton(key, onConfirm) {
-  let isArmed = false, timer = 0;
+  let isArmed = false, disarmTimer = 0;
   const confirmedButton = makeButton(key, (event) => {
     if (isSecondPress(event)) return; // a habit is no second thought
     if (isArmed) onConfirm();
@@ -443,8 +443,8 @@ function makeConfirmedButton(key, onConfirm) {
     const textKeyNow = isNowArmed ? textKey(`${key}_sure`) : key;
     confirmedButton.dataset['text'] = textKeyNow;
     confirmedButton.textContent = text(textKeyNow);
-    clearTimeout(timer);
-    if (isNowArmed) timer = window.setTimeout(() => setArmed(false), CONFIRM_MS);
+    clearTimeout(disarmTimer);
+    if (isNowArmed) disarmTimer = window.setTimeout(() => setArmed(false), CONFIRM_MS);
   };
   return confirmedButton;
 }

@@ -7,7 +7,7 @@ import { Annotation, ChangeSet, StateEffect, StateField, Transaction } from '@co
 import { Decoration, EditorView, WidgetType } from '@codemirror/view';
 import { makeElement } from '../page/made.js';
 import { text } from '../page/texts.js';
-import { HeardNews } from './heard.js';
+import { NewsCursor } from './news_cursor.js';
 import { post } from '../robot/host.js';
 import { ConnectionFailure, pause } from '../robot/transport.js';
 
@@ -20,8 +20,8 @@ const BUSY_LIMIT_MS = 2000; // that changes of others wait for somebody's hands
 const POLL_MS = 50;
 const DECISION_LIMIT_MS = 2000; // for what was done before an undo
 
-/** @typedef {{name: string, mark: number, at: string, writes: boolean}} Other */
-/** @typedef {{line: number, color: string, said: string}} MatePlace */
+/** @typedef {{name: string, mark: number, at: string, writes: boolean}} Mate */
+/** @typedef {{line: number, color: string, label: string}} MatePlace */
 
 /**
  * @typedef {object} PythonAnswer what Python answers
@@ -43,54 +43,54 @@ const DECISION_LIMIT_MS = 2000; // for what was done before an undo
 
 /**
  * @typedef {object} TogetherListener who hears of it
- * @property {(why: unknown) => void} fails that is a bug
- * @property {() => void} left this page is not in the group any more
- * @property {(others: Other[]) => void} others who is here has changed
- * @property {(why: string) => void} refused a change of this page was
- * @property {(kept: {name: string}) => void} keep what a page goes on with that is loaded again
- * @property {(isHeard: boolean) => void} answers whether the class answers
- * @property {(places: MatePlace[]) => void} places where the others are in the text
- * @property {(event: import('../robot/panel.js').GroupRobotEvent) => void} runs the group's robot, which another page drives, has told this
+ * @property {(error: unknown) => void} onBug that is a bug
+ * @property {() => void} onLeft this page is not in the group any more
+ * @property {(mates: Mate[]) => void} onMatesChange who is here has changed
+ * @property {(why: string) => void} onRefusal a change of this page is refused
+ * @property {(kept: {name: string}) => void} storePage what a page goes on with that is loaded again
+ * @property {(isAnswered: boolean) => void} onRequestEnd whether the class has answered
+ * @property {(places: MatePlace[]) => void} onMatesMove where the others are in the text
+ * @property {(event: import('../robot/panel.js').GroupRobotEvent) => void} onRobotEvent the group's robot, which another page drives, has told this
  * @property {() => boolean} isBusy whether somebody has a block in the hand, or a field open
  */
 
 /** A change that somebody else has made, or the layout. @type {import('@codemirror/state').AnnotationType<boolean>} */
 const broughtAnnotation = Annotation.define();
-/** @type {import('@codemirror/state').StateEffectType<{line: number, other: Other}[]>} */
-const setOthersEffect = StateEffect.define();
+/** @type {import('@codemirror/state').StateEffectType<{line: number, mate: Mate}[]>} */
+const setMatesEffect = StateEffect.define();
 
-class NameWidget extends WidgetType {
-  /** @param {Other} other */
-  constructor(other) {
+class MateWidget extends WidgetType {
+  /** @param {Mate} mate */
+  constructor(mate) {
     super();
-    this.other = other;
+    this.mate = mate;
   }
 
-  /** @param {NameWidget} widget */
-  eq({ other }) {
-    return other.name === this.other.name && other.mark === this.other.mark && other.writes === this.other.writes;
+  /** @param {MateWidget} widget */
+  eq({ mate }) {
+    return mate.name === this.mate.name && mate.mark === this.mate.mark && mate.writes === this.mate.writes;
   }
 
   toDOM() {
-    const { name, mark: colorIndex, writes: isWriting } = this.other;
+    const { name, mark: colorIndex, writes: isWriting } = this.mate;
     const nameElement = makeElement('span', '', isWriting ? `${name} …` : name);
     nameElement.className = `cm-mate cm-mate-${colorIndex}`;
     return nameElement;
   }
 }
 
-const othersField = StateField.define({
+const matesField = StateField.define({
   create: () => Decoration.none,
   update(marks, transaction) {
     let newMarks = marks.map(transaction.changes);
     for (const effect of transaction.effects) {
-      if (!effect.is(setOthersEffect)) continue;
+      if (!effect.is(setMatesEffect)) continue;
       const { doc } = transaction.state;
-      const ranges = effect.value.filter(({ line }) => line <= doc.lines).flatMap(({ line, other }) => {
+      const ranges = effect.value.filter(({ line }) => line <= doc.lines).flatMap(({ line, mate }) => {
         const { from, to } = doc.line(line);
         return [
-          Decoration.line({ class: `cm-beside cm-mate-${other.mark}` }).range(from),
-          Decoration.widget({ widget: new NameWidget(other), side: 1 }).range(to),
+          Decoration.line({ class: `cm-beside cm-mate-${mate.mark}` }).range(from),
+          Decoration.widget({ widget: new MateWidget(mate), side: 1 }).range(to),
         ];
       });
       newMarks = Decoration.set(ranges, true);
@@ -102,15 +102,15 @@ const othersField = StateField.define({
 
 // Dark enough for white letters, as beside white and beside black; the last but one is the teacher's.
 const COLORS = ['#0b4f9e', '#8a3c00', '#0d6040', '#7a2fb8', '#a3145c', '#4c535e'];
-const DRAFT_COLOR = COLORS.length - 1;
+const DRAFT_COLOR_INDEX = COLORS.length - 1;
 const baseTheme = EditorView.baseTheme({
   '.cm-beside': { boxShadow: 'inset 4px 0 var(--mate)' },
   '.cm-mate': { marginLeft: '1ch', padding: '0 6px', borderRadius: '6px', backgroundColor: 'var(--mate)', color: '#fff', fontSize: '0.85em' },
   ...Object.fromEntries(COLORS.map((color, colorIndex) => [`.cm-mate-${colorIndex}`, { '--mate': color }])),
 });
 
-/** Mates as a list of names in their colours. @param {Other[]} mates */
-export function nameElements(mates) {
+/** Mates as a list of names in their colours. @param {Mate[]} mates */
+export function makeMateElements(mates) {
   return mates.map(({ name, mark: colorIndex }) => {
     const nameElement = makeElement('span', '', name);
     nameElement.className = 'mate';
@@ -128,7 +128,7 @@ export class SharedEditor {
   #isLineTyped = false; // a key was pressed in the line of the caret since the caret came there
   #caretLine = 0; // that of the caret, as it was last seen
   /** What was typed since Python was asked. @type {ChangeSet | null} */
-  #typedSince = null;
+  #typedChanges = null;
   /** @type {any[]} */
   #pendingNews = [];
   /** @type {Promise<unknown> | null} */
@@ -136,14 +136,14 @@ export class SharedEditor {
   /** @type {Promise<unknown>} */
   #lastStep = Promise.resolve();
   #isSending = false;
-  #heardNews = new HeardNews();
-  /** @type {Other[]} */
-  #otherPupils = [];
+  #newsCursor = new NewsCursor();
+  /** @type {Mate[]} */
+  #mates = [];
   /** @type {PythonAnswer} */
   #pythonState = { version: 0, changes: [], ids: [], drafts: [], pending: [], since: -1, epoch: '', told: 0, why: '', count: 0, kept: { name: '' } };
   /** @type {{line: number, writes: boolean} | null} */
   #blocksLine = null; // of the blocks
-  #sentCaret = '';
+  #sentCaretKey = '';
   #caretTimer = 0;
 
   /**
@@ -156,7 +156,7 @@ export class SharedEditor {
     this.#editor = editor;
     this.#listener = listener;
     editor.setUndoHandler((direction) => this.#undoOrRedo(direction));
-    this.#view = editor.extend([othersField, baseTheme, EditorView.updateListener.of((update) => this.#onUpdate(update))]);
+    this.#view = editor.extend([matesField, baseTheme, EditorView.updateListener.of((update) => this.#onUpdate(update))]);
   }
 
   /** Shows the program of a group. @param {any} news of the class @param {unknown} storedPage by this page, before it was loaded again */
@@ -183,7 +183,7 @@ export class SharedEditor {
   end() {
     if (this.#isOver) return;
     this.#isOver = true;
-    this.#showOthers();
+    this.#showMates();
     this.#editor.setUndoHandler(null);
   }
 
@@ -221,7 +221,7 @@ export class SharedEditor {
     const ownTransactions = update.transactions.filter((transaction) => transaction.docChanged && !transaction.annotation(broughtAnnotation));
     const line = update.state.doc.lineAt(update.state.selection.main.head).number;
     if (ownTransactions.length) {
-      this.#typedSince = this.#typedSince?.compose(update.changes) ?? null;
+      this.#typedChanges = this.#typedChanges?.compose(update.changes) ?? null;
       const isTyped = this.#view.hasFocus && !ownTransactions.some((transaction) => FINISHED_EVENTS.some((event) => transaction.isUserEvent(event)));
       const isOtherLine = update.startState.doc.lines !== update.state.doc.lines || (this.#isLineTyped && line !== this.#caretLine);
       this.#isLineTyped = isTyped;
@@ -246,14 +246,14 @@ export class SharedEditor {
   #queueStep(fields, onBegin) {
     const step = this.#lastStep.then(async () => {
       onBegin?.();
-      if (!Object.keys(fields).length) await this.#waitForHands();
+      if (!Object.keys(fields).length) await this.#waitUntilIdle();
       let answer = null;
       while (!this.#isOver && !answer) answer = await this.#tryStep(fields);
       this.#sendChanges();
       return answer;
     }).catch((error) => {
       this.end();
-      this.#listener.fails(error);
+      this.#listener.onBug(error);
       return null;
     });
     this.#lastStep = step;
@@ -261,7 +261,7 @@ export class SharedEditor {
   }
 
   /** What others have changed waits while a sign is composed, a block is dragged or a field is open. */
-  async #waitForHands() {
+  async #waitUntilIdle() {
     for (let waited_ms = 0; waited_ms < BUSY_LIMIT_MS && (this.#view.composing || this.#listener.isBusy()); waited_ms += POLL_MS) await pause(POLL_MS);
   }
 
@@ -269,24 +269,24 @@ export class SharedEditor {
   async #tryStep(fields) {
     const { doc, selection } = this.#view.state;
     const news = this.#pendingNews.slice();
-    this.#typedSince = ChangeSet.empty(doc.length);
+    this.#typedChanges = ChangeSet.empty(doc.length);
     const caret = doc.lineAt(selection.main.head).number - 1;
     /** @type {PythonAnswer} */
     const answer = await this.#python.ask({ do: 'group_step', from: this.#pythonState.version, caret, hot: this.#isLineTyped, news, ...fields }, new TextEncoder().encode(doc.toString()));
-    const typedSince = this.#typedSince;
-    this.#typedSince = null;
-    if (this.#isOver || doOverlap(doc, typedSince, answer.changes)) return null;
+    const typedChanges = this.#typedChanges;
+    this.#typedChanges = null;
+    if (this.#isOver || doOverlap(doc, typedChanges, answer.changes)) return null;
     this.#pendingNews.splice(0, news.length);
-    this.#applyAnswer(answer, doc.length, typedSince);
+    this.#applyAnswer(answer, doc.length, typedChanges);
     return answer;
   }
 
-  /** @param {PythonAnswer} answer @param {number} length of the text that it was made of @param {ChangeSet | null} typedSince since */
-  #applyAnswer(answer, length, typedSince) {
-    const { told: refusedBefore, count: countBefore } = this.#pythonState;
+  /** @param {PythonAnswer} answer @param {number} length of the text that it was made of @param {ChangeSet | null} typedChanges since */
+  #applyAnswer(answer, length, typedChanges) {
+    const { told: refusedCountBefore, count: changeCountBefore } = this.#pythonState;
     this.#pythonState = answer;
     const changes = ChangeSet.of(answer.changes.map(([from, to, insert]) => ({ from, to, insert })), length);
-    const mappedChanges = typedSince && !typedSince.empty ? changes.map(typedSince) : changes;
+    const mappedChanges = typedChanges && !typedChanges.empty ? changes.map(typedChanges) : changes;
     const { selection, doc } = this.#view.state;
     const isAtLineStart = doc.lineAt(selection.main.head).from === selection.main.head; // what is put in there is before its line
     this.#view.dispatch({
@@ -294,21 +294,21 @@ export class SharedEditor {
       ...(isAtLineStart && { selection: selection.map(mappedChanges, 1) }), // else it is mapped so anyway; saying it would end a composition
       annotations: [broughtAnnotation.of(true), Transaction.addToHistory.of(false)],
     });
-    if (answer.count > countBefore) this.#editor.setUndoHandler((direction) => this.#undoOrRedo(direction));
-    this.#showOthers();
-    this.#listener.keep(answer.kept);
-    if (answer.told > refusedBefore && this.#pythonState.version > 1) this.#listener.refused(answer.why);
+    if (answer.count > changeCountBefore) this.#editor.setUndoHandler((direction) => this.#undoOrRedo(direction));
+    this.#showMates();
+    this.#listener.storePage(answer.kept);
+    if (answer.told > refusedCountBefore && this.#pythonState.version > 1) this.#listener.onRefusal(answer.why);
   }
 
   /** Shows where the others are, and what no other page has. */
-  #showOthers() {
+  #showMates() {
     const { ids, drafts } = this.#pythonState;
-    const mates = this.#otherPupils.map((other) => ({ line: ids.indexOf(other.at) + 1, other })).filter(({ line }) => line > 0);
-    const draft = { name: text('group_draft'), mark: DRAFT_COLOR, at: '', writes: false };
-    const places = this.#isOver ? [] : [...mates, ...drafts.map((line) => ({ line, other: draft }))];
+    const mates = this.#mates.map((mate) => ({ line: ids.indexOf(mate.at) + 1, mate })).filter(({ line }) => line > 0);
+    const draft = { name: text('group_draft'), mark: DRAFT_COLOR_INDEX, at: '', writes: false };
+    const places = this.#isOver ? [] : [...mates, ...drafts.map((line) => ({ line, mate: draft }))];
     const { doc, selection } = this.#view.state, typedLine = this.#isLineTyped ? doc.lineAt(selection.main.head).number : 0;
-    this.#view.dispatch({ effects: setOthersEffect.of(places.filter(({ line, other }) => other !== draft || line !== typedLine)) });
-    this.#listener.places(places.map(({ line, other: { name, mark: colorIndex, writes } }) => ({ line, color: COLORS[colorIndex] ?? '', said: writes ? `${name} …` : name })));
+    this.#view.dispatch({ effects: setMatesEffect.of(places.filter(({ line, mate }) => mate !== draft || line !== typedLine)) });
+    this.#listener.onMatesMove(places.map(({ line, mate: { name, mark: colorIndex, writes } }) => ({ line, color: COLORS[colorIndex] ?? '', label: writes ? `${name} …` : name })));
   }
 
   /** The blocks have the focus in this line, or nowhere. @param {number} line @param {boolean} writes */
@@ -319,9 +319,9 @@ export class SharedEditor {
 
   // -- the class --
 
-  #request() {
+  #makeRequest() {
     const { since, epoch, kept: storedPage } = this.#pythonState;
-    return { do: 'group', page: storedPage.name, since, epoch, ...this.#heardNews.position };
+    return { do: 'group', page: storedPage.name, since, epoch, ...this.#newsCursor.position };
   }
 
   /** Hears what is new, for as long as this page is in the group. */
@@ -346,32 +346,32 @@ export class SharedEditor {
   async #postRequest(fields, options) {
     let answer;
     try {
-      answer = await post({ ...this.#request(), ...fields }, options);
+      answer = await post({ ...this.#makeRequest(), ...fields }, options);
     } catch (error) {
       if (this.#isOver) return null;
-      this.#listener.answers(false);
+      this.#listener.onRequestEnd(false);
       await pause(error instanceof ConnectionFailure ? SLOW_RETRY_MS : RETRY_MS);
       return null;
     }
     if (this.#isOver) return null;
     if (answer.left) {
       this.end();
-      this.#listener.left();
+      this.#listener.onLeft();
       return null;
     }
-    this.#listener.answers(true);
-    await this.#takeNews(answer);
+    this.#listener.onRequestEnd(true);
+    await this.#handleNews(answer);
     return answer;
   }
 
   /** @param {any} news */
-  async #takeNews(news) {
-    const haveOthersChanged = JSON.stringify(news.others) !== JSON.stringify(this.#otherPupils);
-    this.#otherPupils = news.others;
-    for (const event of this.#heardNews.take(news)) this.#listener.runs(event);
-    if (haveOthersChanged) {
-      this.#showOthers();
-      this.#listener.others(news.others);
+  async #handleNews(news) {
+    const haveMatesChanged = JSON.stringify(news.others) !== JSON.stringify(this.#mates);
+    this.#mates = news.others;
+    for (const event of this.#newsCursor.take(news)) this.#listener.onRobotEvent(event);
+    if (haveMatesChanged) {
+      this.#showMates();
+      this.#listener.onMatesChange(news.others);
     }
     if (!news.whole && !news.changes.length && !this.#pythonState.pending.length) return;
     this.#pendingNews.push(news);
@@ -383,21 +383,21 @@ export class SharedEditor {
     const { line, writes } = this.#blocksLine ?? { line: this.#caretLine, writes: this.#isLineTyped };
     const lineId = this.#pythonState.ids[line - 1] ?? '';
     const caretKey = JSON.stringify([lineId, writes]);
-    if (caretKey === this.#sentCaret || !this.#pythonState.kept.name) return;
-    this.#sentCaret = caretKey;
+    if (caretKey === this.#sentCaretKey || !this.#pythonState.kept.name) return;
+    this.#sentCaretKey = caretKey;
     clearTimeout(this.#caretTimer);
     this.#caretTimer = window.setTimeout(async () => {
-      if (this.#isOver || await this.#postRequest({ at: lineId, writes }) || this.#isOver || caretKey !== this.#sentCaret) return;
-      this.#sentCaret = ''; // it is lost
+      if (this.#isOver || await this.#postRequest({ at: lineId, writes }) || this.#isOver || caretKey !== this.#sentCaretKey) return;
+      this.#sentCaretKey = ''; // it is lost
       this.#sendCaret();
     }, CARET_INTERVAL_MS);
   }
 }
 
-/** Whether something was typed in a line that is changed. @param {import('@codemirror/state').Text} doc @param {ChangeSet} typedSince @param {[number, number, string][]} changes */
-function doOverlap(doc, typedSince, changes) {
+/** Whether something was typed in a line that is changed. @param {import('@codemirror/state').Text} doc @param {ChangeSet} typedChanges @param {[number, number, string][]} changes */
+function doOverlap(doc, typedChanges, changes) {
   const lines = new Set();
-  typedSince.iterChangedRanges((from, to) => {
+  typedChanges.iterChangedRanges((from, to) => {
     for (let lineNumber = doc.lineAt(from).number; lineNumber <= doc.lineAt(to).number; lineNumber += 1) lines.add(lineNumber);
   });
   return changes.some(([from, to]) => {

@@ -6,7 +6,7 @@ import { setText } from '../page/elements.js';
 import { makeButton, makeSvg, makeElement } from '../page/made.js';
 import { COLOURS } from '../page/own_robot.js';
 import { clockText } from './clock.js';
-import { makeSign } from './signs.js';
+import { makeIcon } from './icons.js';
 import { asPlainText } from '../robot/plain_text.js';
 import { text } from '../page/texts.js';
 
@@ -18,11 +18,11 @@ import { text } from '../page/texts.js';
  * @property {string[]} lessons
  * @property {PupilRow | null} pupil null of who is not here
  */
-/** @typedef {{see: (key: string) => void, remove: (key: string) => void, lower: (key: string) => void, play: (key: string) => void, join: (key: string) => void}} TileActions */
-/** @typedef {{item: HTMLElement, see: HTMLButtonElement, own: SVGElement, name: HTMLElement, hand: HTMLButtonElement, out: HTMLButtonElement, play: HTMLButtonElement, join: HTMLButtonElement, picture: HTMLImageElement, empty: HTMLElement, badge: HTMLElement, pips: HTMLElement, said: HTMLElement}} Tile */
+/** @typedef {{enlarge: (key: string) => void, remove: (key: string) => void, lowerHand: (key: string) => void, playRun: (key: string) => void, visitGroup: (key: string) => void}} TileActions */
+/** @typedef {{item: HTMLElement, enlargeButton: HTMLButtonElement, ownRobotDrawing: SVGElement, nameElement: HTMLElement, handButton: HTMLButtonElement, outButton: HTMLButtonElement, playButton: HTMLButtonElement, joinButton: HTMLButtonElement, pictureElement: HTMLImageElement, emptyElement: HTMLElement, badgeElement: HTMLElement, pipsElement: HTMLElement, stateElement: HTMLElement}} Tile */
 
 const SILENT_S = 5;
-const PICTURE_RATIO = 1.75; // of a tile's picture: what suits most programs
+const PICTURE_ASPECT_RATIO = 1.75; // of a tile's picture: what suits most programs
 const LEAST_WIDTH_PX = 132; // pixels of width, below which the wall is scrolled
 const LEAST_HEIGHT_PX = 84; // and of height
 const MOST_HEIGHT_PX = 260;
@@ -69,38 +69,38 @@ export class Wall {
     const tile = this.#tiles.get(key);
     if (!tile) return false;
     releasePicture(tile);
-    tile.picture.hidden = !address;
-    tile.empty.hidden = Boolean(address);
-    if (address) tile.picture.src = address;
-    else tile.picture.removeAttribute('src');
+    tile.pictureElement.hidden = !address;
+    tile.emptyElement.hidden = Boolean(address);
+    if (address) tile.pictureElement.src = address;
+    else tile.pictureElement.removeAttribute('src');
     return true;
   }
 
   /** The address of the picture in a tile, or nothing; the one before it is no more. @param {string} key */
-  pictureOf(key) {
-    return this.#tiles.get(key)?.picture.getAttribute('src') ?? '';
+  pictureAddressOf(key) {
+    return this.#tiles.get(key)?.pictureElement.getAttribute('src') ?? '';
   }
 
   /** @param {TileContent} content @returns {Tile} */
   #makeTile({ key }) {
-    const seeButton = makeButton('', () => this.#actions.see(key));
-    const handButton = makeButton('', () => this.#actions.lower(key), makeSign('hand', 26));
-    const outButton = makeButton('', () => this.#actions.remove(key), makeSign('out', 20));
-    const playButton = makeButton('', () => this.#actions.play(key), makeSign('run', 20));
-    const joinButton = makeButton('', () => this.#actions.join(key), makeSign('join', 20));
+    const enlargeButton = makeButton('', () => this.#actions.enlarge(key));
+    const handButton = makeButton('', () => this.#actions.lowerHand(key), makeIcon('hand', 26));
+    const outButton = makeButton('', () => this.#actions.remove(key), makeIcon('out', 20));
+    const playButton = makeButton('', () => this.#actions.playRun(key), makeIcon('run', 20));
+    const joinButton = makeButton('', () => this.#actions.visitGroup(key), makeIcon('join', 20));
     const nameElement = makeElement('strong'), pictureElement = makeElement('img'), emptyElement = makeElement('span', 'class_empty');
     const badgeElement = makeElement('span'), pipsElement = makeElement('span'), stateElement = makeElement('span');
-    for (const [className, element] of Object.entries({ see: seeButton, hand: handButton, out: outButton, play: playButton, join: joinButton, badge: badgeElement, pips: pipsElement, said: stateElement, empty: emptyElement })) element.className = className;
+    for (const [className, element] of Object.entries({ see: enlargeButton, hand: handButton, out: outButton, play: playButton, join: joinButton, badge: badgeElement, pips: pipsElement, said: stateElement, empty: emptyElement })) element.className = className;
     pictureElement.alt = '';
     pictureElement.hidden = true;
     emptyElement.hidden = true; // until its program is known
     const ownRobotDrawing = makeSvg('svg', { class: 'own_robot', viewBox: '-26 -22 54 44', 'aria-hidden': 'true' }, makeSvg('use', { href: '#drawn_robot' }));
-    const listItem = makeElement('li', '', nameElement, makeElement('div', '', pictureElement, emptyElement), makeElement('p', '', pipsElement, stateElement), badgeElement, ownRobotDrawing, seeButton, handButton, playButton, joinButton, outButton);
-    return { item: listItem, see: seeButton, own: ownRobotDrawing, name: nameElement, hand: handButton, out: outButton, play: playButton, join: joinButton, picture: pictureElement, empty: emptyElement, badge: badgeElement, pips: pipsElement, said: stateElement };
+    const listItem = makeElement('li', '', nameElement, makeElement('div', '', pictureElement, emptyElement), makeElement('p', '', pipsElement, stateElement), badgeElement, ownRobotDrawing, enlargeButton, handButton, playButton, joinButton, outButton);
+    return { item: listItem, enlargeButton, ownRobotDrawing, nameElement, handButton, outButton, playButton, joinButton, pictureElement, emptyElement, badgeElement, pipsElement, stateElement };
   }
 
   /** @param {Tile} tile @param {TileContent} content @param {number} lessonCount */
-  #fillTile(tile, { key, name, lessons: lessonsDone, pupil }, lessonCount) {
+  #fillTile(tile, { key, name, lessons: doneLessons, pupil }, lessonCount) {
     const isGroup = key.startsWith('group '); // whose pupils leave it
     const plainName = asPlainText(name);
     const state = !pupil ? 'gone' : pupil.silent_s > SILENT_S ? 'away' : pupil.is_right ? 'right' : 'wrong';
@@ -108,37 +108,37 @@ export class Wall {
     if (tile.item.dataset['state'] !== state) tile.item.dataset['state'] = state;
     const { name: ownRobotName = '', colour = 0 } = pupil?.own_robot ?? {};
     const [bodyColour, edgeColour] = COLOURS[colour] ?? COLOURS[0];
-    tile.own.style.setProperty('--robot', bodyColour);
-    tile.own.style.setProperty('--robot-edge', edgeColour);
-    setText(tile.name, [plainName, asPlainText(ownRobotName)].filter(Boolean).join(' · '));
-    setText(tile.said, state === 'right' ? '✓' : text(`class_is_${state}`));
-    tile.hand.hidden = !pupil?.hand;
-    tile.play.hidden = isGroup || state === 'gone' || state === 'away';
-    tile.out.hidden = isGroup;
-    tile.join.hidden = !isGroup;
+    tile.ownRobotDrawing.style.setProperty('--robot', bodyColour);
+    tile.ownRobotDrawing.style.setProperty('--robot-edge', edgeColour);
+    setText(tile.nameElement, [plainName, asPlainText(ownRobotName)].filter(Boolean).join(' · '));
+    setText(tile.stateElement, state === 'right' ? '✓' : text(`class_is_${state}`));
+    tile.handButton.hidden = !pupil?.hand;
+    tile.playButton.hidden = isGroup || state === 'gone' || state === 'away';
+    tile.outButton.hidden = isGroup;
+    tile.joinButton.hidden = !isGroup;
     const badge = drivenRobot ? `${pupil?.is_running ? '▶ ' : ''}${drivenRobot} ${clockText(pupil?.left_s ?? 0)}` : pupil?.place ? text('class_place_short', { place: pupil.place }) : '';
-    tile.badge.hidden = !badge;
-    if (tile.badge.dataset['said'] !== badge) {
-      tile.badge.dataset['said'] = badge;
-      tile.badge.replaceChildren(makeSign(drivenRobot ? 'robot' : 'queue', 18), makeElement('span', '', badge));
-      tile.badge.classList.toggle('drives', Boolean(drivenRobot));
+    tile.badgeElement.hidden = !badge;
+    if (tile.badgeElement.dataset['said'] !== badge) {
+      tile.badgeElement.dataset['said'] = badge;
+      tile.badgeElement.replaceChildren(makeIcon(drivenRobot ? 'robot' : 'queue', 18), makeElement('span', '', badge));
+      tile.badgeElement.classList.toggle('drives', Boolean(drivenRobot));
     }
-    const marks = Array.from({ length: lessonCount }, (_, index) => (lessonsDone.some((lessonName) => Number.parseInt(lessonName, 10) === index + 1) ? '●' : '○')).join('');
-    if (tile.pips.dataset['marks'] !== marks) {
-      tile.pips.dataset['marks'] = marks;
-      tile.pips.replaceChildren(...[...marks].map((mark) => {
+    const marks = Array.from({ length: lessonCount }, (_, index) => (doneLessons.some((lessonName) => Number.parseInt(lessonName, 10) === index + 1) ? '●' : '○')).join('');
+    if (tile.pipsElement.dataset['marks'] !== marks) {
+      tile.pipsElement.dataset['marks'] = marks;
+      tile.pipsElement.replaceChildren(...[...marks].map((mark) => {
         const pip = makeElement('i');
         if (mark === '●') pip.className = 'done';
         return pip;
       }));
     }
     const details = [text(`class_is_${state}`), pupil?.hand ? text('class_hand_up') : '', robotText(pupil),
-      pupil?.place ? text('class_waits', { place: pupil.place }) : '', text('class_lessons', { done: lessonsDone.length, all: lessonCount })];
-    setLabel(tile.see, `${text('class_see_of', { name: plainName })} ${details.filter(Boolean).join(', ')}`);
-    setLabel(tile.hand, text('class_lower', { name: plainName }));
-    setLabel(tile.out, text('class_remove_of', { name: plainName }));
-    setLabel(tile.join, text('class_visit_of', { name: plainName }));
-    setLabel(tile.play, text('class_run_of', { name: plainName }));
+      pupil?.place ? text('class_waits', { place: pupil.place }) : '', text('class_lessons', { done: doneLessons.length, all: lessonCount })];
+    setLabel(tile.enlargeButton, `${text('class_see_of', { name: plainName })} ${details.filter(Boolean).join(', ')}`);
+    setLabel(tile.handButton, text('class_lower', { name: plainName }));
+    setLabel(tile.outButton, text('class_remove_of', { name: plainName }));
+    setLabel(tile.joinButton, text('class_visit_of', { name: plainName }));
+    setLabel(tile.playButton, text('class_run_of', { name: plainName }));
   }
 
   /** Chooses the columns with which tiles are largest. */
@@ -150,7 +150,7 @@ export class Wall {
     for (let columns = 1; columns <= count && (width + GAP_PX) / columns - GAP_PX >= LEAST_WIDTH_PX; columns += 1) {
       const width_px = (width + GAP_PX) / columns - GAP_PX;
       const height_px = Math.min(MOST_HEIGHT_PX, (height + GAP_PX) / Math.ceil(count / columns) - GAP_PX);
-      const pictureSize = Math.min(width_px / PICTURE_RATIO, height_px);
+      const pictureSize = Math.min(width_px / PICTURE_ASPECT_RATIO, height_px);
       if (pictureSize > bestLayout.size) bestLayout = { columns, size: pictureSize };
     }
     if (bestLayout.size < LEAST_HEIGHT_PX) bestLayout.columns = Math.max(1, Math.floor((width + GAP_PX) / (LEAST_WIDTH_PX + 30 + GAP_PX)));
@@ -162,7 +162,7 @@ export class Wall {
 }
 
 /** Nothing is kept of the picture in a tile. @param {Tile} tile */
-function releasePicture({ picture }) {
+function releasePicture({ pictureElement: picture }) {
   if (picture.src.startsWith('blob:')) URL.revokeObjectURL(picture.src);
 }
 

@@ -4,7 +4,7 @@ import { makeButton, makeElement } from '../page/made.js';
 import { element } from '../page/elements.js';
 
 /** @param {string} id @param {import('../page/texts.js').Key | ''} key of its title */
-export function closedWindow(id, key) {
+export function makeWindow(id, key) {
   const dialog = makeElement('dialog'), title = makeElement('h2', key);
   dialog.id = id;
   dialog.className = 'class_window';

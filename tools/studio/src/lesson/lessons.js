@@ -10,7 +10,7 @@ import { labelOfCode } from '../blocks/said.js';
 import { Pictures } from '../blocks/drawn.js';
 import { makeBlockElement } from './page.js';
 import { celebrate } from './celebration.js';
-import { forgetProgram, storeDone, storeProgram, storeStars, loadPlace, storePlace, loadDoneLessons, loadStars, loadProgram, countAllStars } from './progress.js';
+import { forgetProgram, storeDoneLesson, storeProgram, storeStars, loadPlace, storePlace, loadDoneLessons, loadStars, loadProgram, countAllStars } from './progress.js';
 import { replaceOptions, makePictureOption, makeWorldPicture } from '../page/pictures.js';
 import { pageState } from '../page/page_state.js';
 import { makeTextElement } from '../page/sentences.js';
@@ -32,14 +32,14 @@ import { robotOf } from '../page/words.js';
  * @property {Record<string, import('../blocks/said.js').SpokenBlock>} spoken what each code in it is as a block
  * @property {{seed: number, until_ms: number} | null} run
  */
-/** @typedef {{programText: string, verdict: keyof typeof VERDICT_KEYS, sentence: string, stars: string, said: string[], block_said: string[]}} Judgement */
+/** @typedef {{programText: string, verdict: keyof typeof VERDICT_KEYS, sentence: string, stars: string, sentences: string[], blockSentences: string[]}} Judgement */
 /**
  * @typedef {object} Page what the lessons need of the page
  * @property {import('../python.js').Python} python
  * @property {import('../programs/work.js').Work} work
- * @property {(program: Program) => void} put another program into the editor, which is seen then
- * @property {(program: Program) => void} exchange it, whatever is seen
- * @property {() => boolean} keep it among the earlier programs; whether nothing of it would be lost
+ * @property {(program: Program) => void} putProgram another program into the editor, which is seen then
+ * @property {(program: Program) => void} exchangeProgram the same, whatever is seen
+ * @property {() => boolean} keepProgram among the earlier programs; whether nothing of it would be lost
  * @property {import('../virtual/simulator_panel.js').SimulatorPanel} simulatorPanel
  */
 
@@ -66,17 +66,17 @@ export class Lessons {
   /** The same for who sees blocks. @type {Step[]} */
   #blockSteps = [];
   /** Where this tab was before the page was loaded. */
-  #placeBefore = loadPlace();
-  #stepIndex = this.#placeBefore.step;
+  #storedPlace = loadPlace();
+  #stepIndex = this.#storedPlace.step;
   #checkCount = 0; // the newest one goes on; others have been ended
   #requestCount = 0;
   #isShown = false;
-  #wantedNumber = 0; // of the lesson that is to be opened once the lessons are known
+  #wantedLessonNumber = 0; // of the lesson that is to be opened once the lessons are known
   #lessonSelect = element('lesson', HTMLSelectElement);
   #checkButton = element('lesson_check', HTMLButtonElement);
   #endButton = element('lesson_end', HTMLButtonElement);
   #verdictElement = element('lesson_said', HTMLElement);
-  #anewButton = element('lesson_anew', HTMLButtonElement);
+  #beginAnewButton = element('lesson_anew', HTMLButtonElement);
   #findingsElement = element('lesson_findings', HTMLElement);
   #nextButton = element('lesson_next', HTMLButtonElement);
   #hintElement = element('lesson_hint', HTMLDetailsElement);
@@ -107,7 +107,7 @@ export class Lessons {
       this.#verdictElement.textContent = text('lesson_ended');
       this.#checkButton.focus();
     });
-    this.#anewButton.addEventListener('click', () => this.#beginAnew());
+    this.#beginAnewButton.addEventListener('click', () => this.#beginAnew());
     this.#nextButton.addEventListener('click', (event) => {
       if (isSecondPress(event)) return; // one step is seen after the other
       if (this.#stepIndex < this.#steps.length - 1) this.#goToStep(this.#stepIndex + 1);
@@ -127,7 +127,7 @@ export class Lessons {
     });
     pageState.robotName.subscribe(() => this.#fillStep());
     pageState.sideId.subscribe((sideId) => {
-      this.#keepPlace();
+      this.#storeCurrentPlace();
       if (sideId === 'side_lessons') return;
       const { text: programText, lesson: lessonName, own: ownProgram } = this.#page.work;
       if (!programText.trim()) this.leave();
@@ -137,9 +137,9 @@ export class Lessons {
       if (!this.#endButton.hidden || !this.#judgement) {
         if (this.#isShown) this.#forgetCheck();
       } else this.#showJudgement();
-      this.#keepProgram();
+      this.#storeCurrentProgram();
     });
-    this.#unfoldButton.addEventListener('click', () => this.#unfold(this.#unfoldButton.getAttribute('aria-expanded') === 'false'));
+    this.#unfoldButton.addEventListener('click', () => this.#setUnfolded(this.#unfoldButton.getAttribute('aria-expanded') === 'false'));
     const lessonPage = element('lesson_page', HTMLElement);
     const markMore = () => lessonPage.classList.toggle('more', lessonPage.scrollTop + lessonPage.clientHeight < lessonPage.scrollHeight - SCROLL_TOLERANCE_PX);
     lessonPage.addEventListener('scroll', markMore, { passive: true });
@@ -149,13 +149,13 @@ export class Lessons {
   }
 
   /** A page that is loaded again comes back to the lesson that was seen. */
-  comeBack() {
-    if (this.#placeBefore.isOpen) element('side_lessons', HTMLButtonElement).click();
+  reopen() {
+    if (this.#storedPlace.isOpen) element('side_lessons', HTMLButtonElement).click();
   }
 
-  #keepPlace() {
-    const openLesson = this.#steps.length ? this.#lessons[this.#lessonNumber - 1] : null;
-    const place = openLesson ? { lesson: openLesson.name, step: this.#stepIndex } : this.#placeBefore;
+  #storeCurrentPlace() {
+    const currentLesson = this.#steps.length ? this.#lessons[this.#lessonNumber - 1] : null;
+    const place = currentLesson ? { lesson: currentLesson.name, step: this.#stepIndex } : this.#storedPlace;
     storePlace({ ...place, isOpen: pageState.sideId.value === 'side_lessons' });
   }
 
@@ -170,7 +170,7 @@ export class Lessons {
 
   /** Opens a lesson, whichever is open. @param {number} lessonNumber */
   open(lessonNumber) {
-    this.#wantedNumber = lessonNumber;
+    this.#wantedLessonNumber = lessonNumber;
     if (this.#lessons.length) this.#chooseLesson(lessonNumber).catch((error) => this.#showFailure(error));
     element('side_lessons', HTMLButtonElement).click();
   }
@@ -202,8 +202,8 @@ export class Lessons {
       if (requestNumber !== this.#requestCount) return;
       this.#lessons = lessons;
       if (!this.#steps.length) {
-        const doneLessons = loadDoneLessons(), lesson = this.#placeBefore.lesson || this.#page.work.lesson;
-        this.#lessonNumber = this.#wantedNumber || 1 + Math.max(0, this.#lessons.findIndex(({ name }) => (lesson ? name === lesson : !doneLessons.has(name))));
+        const doneLessons = loadDoneLessons(), lesson = this.#storedPlace.lesson || this.#page.work.lesson;
+        this.#lessonNumber = this.#wantedLessonNumber || 1 + Math.max(0, this.#lessons.findIndex(({ name }) => (lesson ? name === lesson : !doneLessons.has(name))));
       }
       this.#listLessons();
       await this.#chooseLesson(this.#lessonNumber);
@@ -227,13 +227,13 @@ export class Lessons {
     this.#lessonSelect.value = String(this.#lessonNumber);
   }
 
-  get #areBlocks() {
+  get #isBlockView() {
     return pageState.view.value === 'blocks';
   }
 
   /** @param {Lesson} lesson */
   #titleOf(lesson) {
-    return this.#areBlocks ? lesson.block_title : lesson.title;
+    return this.#isBlockView ? lesson.block_title : lesson.title;
   }
 
   /** @param {number} lessonNumber */
@@ -255,21 +255,21 @@ export class Lessons {
     this.#setReady(true);
   }
 
-  /** @param {boolean} isWhole the step lies over the blocks, where it is two lines above them otherwise */
-  #unfold(isWhole) {
-    this.#unfoldButton.setAttribute('aria-expanded', String(isWhole));
+  /** @param {boolean} isUnfolded the step lies over the blocks, where it is two lines above them otherwise */
+  #setUnfolded(isUnfolded) {
+    this.#unfoldButton.setAttribute('aria-expanded', String(isUnfolded));
     element('lesson_page', HTMLElement).scrollTop = 0;
   }
 
   /** Shows a step. @param {number} stepIndex */
   #goToStep(stepIndex) {
     this.#stepIndex = stepIndex;
-    this.#keepPlace();
+    this.#storeCurrentPlace();
     if ([text('lesson_used'), text('lesson_used_again'), text('lesson_again')].includes(pageState.note.value)) pageState.note.set(''); // it was said of the step before
     const lessonPage = element('lesson_page', HTMLElement);
     this.#fillStep();
     lessonPage.dataset['lesson'] = String(this.#lessonNumber);
-    this.#unfold(false);
+    this.#setUnfolded(false);
     this.#hintElement.open = false;
     this.#hintElement.hidden = !this.#steps[stepIndex]?.hint;
     element('lesson_steps', HTMLElement).replaceChildren(...this.#steps.map((_, index) => {
@@ -287,7 +287,7 @@ export class Lessons {
 
   /** Shows what the step says and what a check has found, as this person writes programs. */
   #fillStep() {
-    const shownStep = (this.#areBlocks ? this.#blockSteps : this.#steps)[this.#stepIndex], lesson = this.#lessons[this.#lessonNumber - 1];
+    const shownStep = (this.#isBlockView ? this.#blockSteps : this.#steps)[this.#stepIndex], lesson = this.#lessons[this.#lessonNumber - 1];
     if (!shownStep || !lesson) return;
     const reader = this.#makeReader(lesson);
     element('lesson_name', HTMLElement).textContent = this.#titleOf(lesson);
@@ -318,7 +318,7 @@ export class Lessons {
 
   #showFindings() {
     const lesson = this.#lessons[this.#lessonNumber - 1];
-    const sentences = (this.#areBlocks ? this.#judgement?.block_said : this.#judgement?.said) ?? [];
+    const sentences = (this.#isBlockView ? this.#judgement?.blockSentences : this.#judgement?.sentences) ?? [];
     this.#findingsElement.replaceChildren(...lesson ? sentences.map((sentence) => makeTextElement('li', sentence, this.#makeReader(lesson))) : []);
   }
 
@@ -327,11 +327,11 @@ export class Lessons {
     return {
       useProgram: (programText) => {
         const isOwnReplaced = !this.#page.work.lesson;
-        this.#page.put(this.#lendProgram(lesson, programText));
+        this.#page.putProgram(this.#lendProgram(lesson, programText));
         pageState.note.set(text(isOwnReplaced ? 'lesson_used' : 'lesson_used_again'));
       },
-      labelOfCode: (code) => (this.#areBlocks ? labelOfCode(code, this.#spokenBlocks) : null),
-      drawProgram: this.#areBlocks ? (programText, onDone) => {
+      labelOfCode: (code) => (this.#isBlockView ? labelOfCode(code, this.#spokenBlocks) : null),
+      drawProgram: this.#isBlockView ? (programText, onDone) => {
         this.#pictures.request(programText, { text: programText, robot: pageState.robotName.value }, onDone);
       } : null,
     };
@@ -344,7 +344,7 @@ export class Lessons {
     this.#checkButton.hidden = !isTask || !this.#endButton.hidden;
     this.#nextButton.hidden = isTask && !(this.#hasPassed && this.#lessonNumber < this.#lessons.length);
     this.#nextButton.textContent = text(isTask ? 'lesson_other' : 'lesson_next');
-    this.#anewButton.hidden = !this.#canBeginAnew;
+    this.#beginAnewButton.hidden = !this.#canBeginAnew;
     if (activeElement instanceof HTMLElement && activeElement.hidden) element('lesson_page', HTMLElement).focus();
   }
 
@@ -357,9 +357,9 @@ export class Lessons {
   /** The lesson is as it was at first: the program is among the earlier ones, and the stars stay. */
   #beginAnew() {
     const lesson = this.#lessons[this.#lessonNumber - 1];
-    if (!lesson || !this.#canBeginAnew || !this.#page.keep()) return;
+    if (!lesson || !this.#canBeginAnew || !this.#page.keepProgram()) return;
     this.#forgetCheck();
-    this.#page.exchange(this.#lendProgram(lesson, ''));
+    this.#page.exchangeProgram(this.#lendProgram(lesson, ''));
     forgetProgram(lesson.name);
     this.#goToStep(0);
     pageState.note.set(text('lesson_begun_anew'));
@@ -372,7 +372,7 @@ export class Lessons {
     const keptText = loadProgram(lesson.name);
     if (keptText && this.#page.work.lesson !== lesson.name && !pageState.groupName.value) {
       if (keptText !== pageState.programText.value) {
-        this.#page.exchange(this.#lendProgram(lesson, keptText));
+        this.#page.exchangeProgram(this.#lendProgram(lesson, keptText));
         pageState.note.set(text('lesson_again'));
       }
       await this.#showWorld(1);
@@ -382,7 +382,7 @@ export class Lessons {
     if (lesson.name !== this.#lessons[this.#lessonNumber - 1]?.name) return; // another one is seen now
     if (isForOtherRobot) {
       const notice = text(this.#page.work.lesson ? 'lesson_before' : 'lesson_own');
-      this.#page.exchange(this.#lendProgram(lesson, ''));
+      this.#page.exchangeProgram(this.#lendProgram(lesson, ''));
       pageState.note.set(notice);
     }
     await this.#showWorld(1);
@@ -402,11 +402,11 @@ export class Lessons {
   }
 
   /** Keeps a lesson's program; one that is changed beside another lesson is that one's from then on. */
-  #keepProgram() {
-    const { work } = this.#page, openLesson = this.#lessons[this.#lessonNumber - 1];
+  #storeCurrentProgram() {
+    const { work } = this.#page, currentLesson = this.#lessons[this.#lessonNumber - 1];
     if (pageState.groupName.value) [work.lesson, work.own] = ['', null]; // it is the group's
     if (!work.lesson) return;
-    if (openLesson && pageState.sideId.value === 'side_lessons') work.lesson = openLesson.name;
+    if (currentLesson && pageState.sideId.value === 'side_lessons') work.lesson = currentLesson.name;
     storeProgram(work.lesson, pageState.programText.value);
   }
 
@@ -422,7 +422,7 @@ export class Lessons {
     this.#forgetCheck();
     const { own: ownProgram } = this.#page.work;
     if (!ownProgram || pageState.groupName.value) return;
-    this.#page.exchange(ownProgram);
+    this.#page.exchangeProgram(ownProgram);
     this.#page.simulatorPanel.leaveLesson();
   }
 
@@ -441,16 +441,16 @@ export class Lessons {
   async #startCheck() {
     this.#forgetCheck();
     const checkNumber = this.#checkCount;
-    const number = this.#lessonNumber;
+    const lessonNumber = this.#lessonNumber;
     const programBytes = new TextEncoder().encode(pageState.programText.value);
-    const { worlds } = /** @type {Lesson} */ (this.#lessons[number - 1]);
+    const { worlds } = /** @type {Lesson} */ (this.#lessons[lessonNumber - 1]);
     this.#endButton.hidden = false;
     this.#showButtons();
     this.#endButton.focus();
     this.#verdictElement.textContent = text('lesson_checking', { seed: 1, worlds });
     let most_ms = LEAST_ROBOT_MS;
     try {
-      await this.#page.python.ask({ do: 'lesson_check', number, language: currentLanguage() }, programBytes);
+      await this.#page.python.ask({ do: 'lesson_check', number: lessonNumber, language: currentLanguage() }, programBytes);
       while (checkNumber === this.#checkCount) {
         const began_ms = performance.now();
         /** @type {CheckAnswer} */
@@ -494,7 +494,7 @@ export class Lessons {
     const lesson = /** @type {Lesson} */ (this.#lessons[this.#lessonNumber - 1]);
     const stars = verdict === 'passed' ? worlds : verdict === 'failed' ? Math.max(0, seed - 1) : 0;
     const areStarsStored = storeStars(lesson.name, stars); // first: one that is done has a star
-    const isStored = (verdict !== 'passed' || storeDone(lesson.name)) && areStarsStored;
+    const isStored = (verdict !== 'passed' || storeDoneLesson(lesson.name)) && areStarsStored;
     this.#forgetCheck();
     const hasPassed = verdict === 'passed', wasDone = !hasPassed && loadDoneLessons().has(lesson.name);
     this.#listLessons();
@@ -507,8 +507,8 @@ export class Lessons {
       verdict,
       sentence: hasPassed ? `${sentence} ${text('lesson_total', { count: countAllStars() })}` : wasDone ? `${sentence} ${text('lesson_was_done')}` : sentence,
       stars: verdict === 'mistakes' ? '' : '★'.repeat(stars) + '☆'.repeat(worlds - stars), // one for each world where it did its task
-      said: sentences,
-      block_said,
+      sentences,
+      blockSentences: block_said,
     };
     this.#showJudgement();
     this.#hintElement.open = false;

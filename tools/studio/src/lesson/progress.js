@@ -21,7 +21,7 @@ export function loadDoneLessons() {
 }
 
 /** Keeps that a lesson is done; returns whether that was possible. @param {string} name */
-export function storeDone(name) {
+export function storeDoneLesson(name) {
   return storeText(STORAGE_KEY, JSON.stringify([...loadDoneLessons().add(name)]));
 }
 

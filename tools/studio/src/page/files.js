@@ -19,7 +19,7 @@ export function onFileChosen(id, onFile) {
  * @param {File} file
  * @returns {Promise<Uint8Array>}
  */
-export async function bytesOf(file) {
+export async function readBytes(file) {
   return new Uint8Array(await file.slice(0, MOST_BYTES).arrayBuffer());
 }
 
@@ -27,7 +27,7 @@ export async function bytesOf(file) {
  * @param {string} name
  * @param {string} text
  */
-export function download(name, text) {
+export function downloadText(name, text) {
   downloadFile(name, new Blob([text], { type: 'text/plain;charset=utf-8' }));
 }
 

@@ -5,13 +5,13 @@
 
 const KEY_PREFIX = 'tiniscript.'; // all places of this page begin with it
 
-let isForgetting = false;
+let isMemoryOnly = false;
 /** @type {Map<string, string>} what is kept from then on, until the page is closed */
 const memoryStore = new Map();
 
 /** What is kept at a place; empty for nothing. @param {string} key @param {StoreName} [storeName] @returns {string} */
 export function loadText(key, storeName = 'localStorage') {
-  if (isForgetting) return memoryStore.get(storeName + key) ?? '';
+  if (isMemoryOnly) return memoryStore.get(storeName + key) ?? '';
   try {
     return window[storeName].getItem(key) ?? '';
   } catch {
@@ -30,7 +30,7 @@ export function loadJson(key, storeName) {
 
 /** Keeps it at a place, empty for nothing; returns whether that was possible. @param {string} key @param {string} text @param {StoreName} [storeName] */
 export function storeText(key, text, storeName = 'localStorage') {
-  if (isForgetting) return Boolean(memoryStore.set(storeName + key, text));
+  if (isMemoryOnly) return Boolean(memoryStore.set(storeName + key, text));
   try {
     if (text) window[storeName].setItem(key, text);
     else window[storeName].removeItem(key);
@@ -42,7 +42,7 @@ export function storeText(key, text, storeName = 'localStorage') {
 
 /** Deletes all that this page has kept on this device; it keeps nothing there from then on. */
 export function forgetAll() {
-  isForgetting = true;
+  isMemoryOnly = true;
   for (const storeName of /** @type {const} */ (['sessionStorage', 'localStorage'])) {
     try {
       for (const key of Object.keys(window[storeName])) if (key.startsWith(KEY_PREFIX)) window[storeName].removeItem(key);

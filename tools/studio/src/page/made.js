@@ -19,11 +19,11 @@ export function makeElement(tag, key = '', ...children) {
   return element;
 }
 
-/** @param {import('./texts.js').Key | ''} key @param {(event: MouseEvent) => void} onPress @param {(Node | string)[]} children */
-export function makeButton(key, onPress, ...children) {
+/** @param {import('./texts.js').Key | ''} key @param {(event: MouseEvent) => void} onClick @param {(Node | string)[]} children */
+export function makeButton(key, onClick, ...children) {
   const element = makeElement('button', key, ...children);
   element.type = 'button';
-  element.addEventListener('click', onPress);
+  element.addEventListener('click', onClick);
   return element;
 }
 

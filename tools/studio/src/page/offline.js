@@ -25,23 +25,23 @@ export function storeLanguage(language) {
  */
 export async function removeForeignWorkers() {
   const registrations = (await navigator.serviceWorker?.getRegistrations()) ?? [];
-  const ownFlags = await Promise.all(registrations.map(isOwnWorker));
-  if (ownFlags.every(Boolean)) return false;
-  await Promise.all(registrations.map((registration, index) => ownFlags[index] || registration.unregister()));
+  const areOwn = await Promise.all(registrations.map(isOwnWorker));
+  if (areOwn.every(Boolean)) return false;
+  await Promise.all(registrations.map((registration, index) => areOwn[index] || registration.unregister()));
   for (const name of await caches.keys()) await caches.delete(name);
   return true;
 }
 
 /** Whether the server has what runs. Its worker is asked for past all workers, and compared by the browser. @param {ServiceWorkerRegistration} registration */
 async function isOwnWorker(registration) {
-  const newestWorker = () => registration.installing ?? registration.waiting ?? registration.active;
-  const runningWorker = registration.active ?? newestWorker();
-  if (runningWorker !== newestWorker() || runningWorker?.scriptURL !== new URL(WORKER_URL, location.href).href) return false;
+  const getNewestWorker = () => registration.installing ?? registration.waiting ?? registration.active;
+  const runningWorker = registration.active ?? getNewestWorker();
+  if (runningWorker !== getNewestWorker() || runningWorker?.scriptURL !== new URL(WORKER_URL, location.href).href) return false;
   if (registration.updateViaCache !== 'imports') return false; // it would be compared with what a browser has kept
   try {
     await registration.update();
   } catch {
     return false;
   }
-  return runningWorker === newestWorker();
+  return runningWorker === getNewestWorker();
 }

@@ -16,7 +16,7 @@ export const COLOURS = /** @type {const} */ ([
 ]);
 
 /** @param {unknown} value from elsewhere @returns {OwnRobot} what of it is one */
-export function ownRobotOf(value) {
+export function validOwnRobot(value) {
   const { name, colour } = /** @type {Partial<Record<string, unknown>>} */ (value && typeof value === 'object' ? value : {});
   return {
     name: typeof name === 'string' ? name.replace(/\p{C}/gu, '').trim().slice(0, MOST_NAME_CHARACTERS) : '',
@@ -31,11 +31,11 @@ export function showOwnRobot() {
     document.documentElement.style.setProperty('--robot', bodyColour);
     document.documentElement.style.setProperty('--robot-edge', edgeColour);
   });
-  pageState.ownRobot.set(ownRobotOf(loadJson(STORAGE_KEY)));
+  pageState.ownRobot.set(validOwnRobot(loadJson(STORAGE_KEY)));
 }
 
 /** @param {OwnRobot} ownRobot @returns {boolean} whether it could be kept */
 export function storeOwnRobot(ownRobot) {
-  pageState.ownRobot.set(ownRobotOf(ownRobot));
+  pageState.ownRobot.set(validOwnRobot(ownRobot));
   return storeText(STORAGE_KEY, JSON.stringify(pageState.ownRobot.value));
 }

@@ -17,7 +17,7 @@ export class Phone {
   #stopButton = element('stop', HTMLButtonElement);
   #sheetButton = element('sheet', HTMLButtonElement);
   /** What somebody wants of the sheet, until the program is right again. @type {boolean | null} */
-  #isAwayWanted = null;
+  #wantsSheetAway = null;
 
   #runRealRobot;
 
@@ -45,9 +45,9 @@ export class Phone {
     pageState.checkResult.subscribe((answer) => {
       if (!answer) return;
       this.#sheetButton.hidden = !answer.findings.length;
-      this.#setSheetAway(answer.findings.length ? this.#isAwayWanted : null);
+      this.#setSheetAway(answer.findings.length ? this.#wantsSheetAway : null);
     });
-    pageState.view.subscribe(() => this.#setSheetAway(this.#isAwayWanted));
+    pageState.view.subscribe(() => this.#setSheetAway(this.#wantsSheetAway));
     this.show('program');
     this.#layOut();
   }
@@ -63,12 +63,12 @@ export class Phone {
   }
 
   get #isSheetAway() {
-    return this.#isAwayWanted ?? (pageState.view.value === 'blocks' && Boolean(pageState.checkResult.value?.image));
+    return this.#wantsSheetAway ?? (pageState.view.value === 'blocks' && Boolean(pageState.checkResult.value?.image));
   }
 
   /** @param {boolean | null} isAway */
   #setSheetAway(isAway) {
-    this.#isAwayWanted = isAway;
+    this.#wantsSheetAway = isAway;
     this.#sheetButton.setAttribute('aria-expanded', String(!this.#isSheetAway));
     element('writing', HTMLElement).dataset['sheet'] = this.#isSheetAway ? 'away' : 'up';
   }

@@ -36,7 +36,7 @@ export function makeRobotPicture(robot) {
   const pen = picture.getContext('2d');
   const scale = WIDTH_PX / VISIBLE_CM;
   pen?.setTransform(scale, 0, 0, -scale, WIDTH_PX / 2 - 2 * scale, HEIGHT_PX / 2);
-  if (pen) drawRobot(pen, robot, null, { rolled: [0, 0], isBeeping: false, colours: COLOURS[pageState.ownRobot.value.colour] ?? COLOURS[0] });
+  if (pen) drawRobot(pen, robot, null, { rolled_cm: [0, 0], isBeeping: false, colours: COLOURS[pageState.ownRobot.value.colour] ?? COLOURS[0] });
   return picture;
 }
 
@@ -73,7 +73,7 @@ export function replaceOptions(select, options) {
 }
 
 /** In a list of pictures an arrow key goes to the picture that is there, and not to the next one. */
-export function goAmongPictures() {
+export function listenToPictureKeys() {
   document.addEventListener('keydown', (event) => {
     const { target, key } = event, direction = { ArrowUp: [0, -1], ArrowDown: [0, 1], ArrowLeft: [-1, 0], ArrowRight: [1, 0] }[key];
     if (!(target instanceof HTMLElement) || target.localName !== 'option' || !direction) return;

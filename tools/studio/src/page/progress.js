@@ -4,9 +4,9 @@
 const NOTICE_MS = 3000;
 const TIMEOUT_MS = 20_000;
 
-/** @typedef {{onWait?: (() => void) | undefined, cancelSignal?: AbortSignal | undefined, onProgress?: (() => void) | undefined, onFail?: ((why: unknown) => void) | undefined}} WatchOptions `onWait`: nothing has come for a while, told once; `onProgress`: something has; `onFail`: not all will come */
+/** @typedef {{onWait?: (() => void) | undefined, cancelSignal?: AbortSignal | undefined, onProgress?: (() => void) | undefined, onFail?: ((error: unknown) => void) | undefined}} WatchOptions `onWait`: nothing has come for a while, told once; `onProgress`: something has; `onFail`: not all will come */
 
-export class Progress {
+export class ProgressWatch {
   #controller = new AbortController();
   #onWait;
   #isOver = false;
@@ -25,7 +25,7 @@ export class Progress {
   get signal() { return this.#controller.signal; }
 
   advance() {
-    this.#clear();
+    this.#clearTimers();
     if (this.#isOver) return;
     this.#timers = [
       setTimeout(() => {
@@ -38,10 +38,10 @@ export class Progress {
 
   end() {
     this.#isOver = true;
-    this.#clear();
+    this.#clearTimers();
   }
 
-  #clear() {
+  #clearTimers() {
     for (const timer of this.#timers) clearTimeout(timer);
   }
 
@@ -69,10 +69,10 @@ export class Progress {
  * @param {typeof fetch} fetcher
  */
 export async function watchedFetch(resource, { onWait, cancelSignal, onProgress = () => {}, onFail = () => {}, ...options } = {}, fetcher = fetch) {
-  const progress = new Progress({ onWait, cancelSignal });
-  const endBadly = (/** @type {unknown} */ why) => {
+  const progress = new ProgressWatch({ onWait, cancelSignal });
+  const fail = (/** @type {unknown} */ error) => {
     progress.end();
-    onFail(why);
+    onFail(error);
   };
   try {
     const answer = await fetcher(resource, { ...options, signal: progress.signal });
@@ -88,10 +88,10 @@ export async function watchedFetch(resource, { onWait, cancelSignal, onProgress 
       },
       flush: () => progress.end(),
     });
-    answer.body.pipeTo(writable).catch(endBadly);
+    answer.body.pipeTo(writable).catch(fail);
     return new Response(readable, { status: answer.status, headers: answer.headers });
   } catch (error) {
-    endBadly(error);
+    fail(error);
     throw error;
   }
 }
@@ -104,5 +104,5 @@ export async function watchedFetch(resource, { onWait, cancelSignal, onProgress 
  * @returns {Promise<T>}
  */
 export function watchPromise(promise, options) {
-  return new Progress(options).watch(promise);
+  return new ProgressWatch(options).watch(promise);
 }

@@ -22,7 +22,7 @@ export function readingText({ unit, arguments: [range] }, value) {
 }
 
 /** @param {string | undefined} shownValue a value as SHOW says it, or nothing */
-export function numberOfShown(shownValue) {
+export function parseShownValue(shownValue) {
   if (!shownValue) return undefined;
   return { TRUE: 1, FALSE: 0 }[shownValue] ?? Number(shownValue);
 }

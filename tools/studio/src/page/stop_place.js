@@ -6,8 +6,8 @@ import { element } from './elements.js';
 
 /** @typedef {'run' | 'link'} Need why it lies there: a run of the virtual robot, or a connection with a real one */
 
-const COMES_MS = 500;
-const STAYS_MS = 1500;
+const SHOW_DELAY_MS = 500;
+const HIDE_DELAY_MS = 1500;
 
 const { dataset } = document.documentElement;
 /** @type {Set<Need>} */
@@ -18,15 +18,15 @@ const shownNeeds = new Set();
 const timers = new Map();
 
 /** @param {Need} need @param {boolean} isNeeded from now on */
-export function needStop(need, isNeeded) {
+export function setStopNeeded(need, isNeeded) {
   if (needs.has(need) === isNeeded) return;
   if (isNeeded) needs.add(need);
   else needs.delete(need);
-  change(need);
+  scheduleChange(need);
 }
 
 /** It comes or goes, but not yet. @param {Need} need */
-function change(need) {
+function scheduleChange(need) {
   clearTimeout(timers.get(need));
   const isShown = shownNeeds.has(need);
   if (isShown === needs.has(need)) return;
@@ -35,7 +35,7 @@ function change(need) {
     else shownNeeds.add(need);
     if (shownNeeds.size) dataset['stop'] = [...shownNeeds].join(' ');
     else delete dataset['stop'];
-  }, isShown ? STAYS_MS : COMES_MS));
+  }, isShown ? HIDE_DELAY_MS : SHOW_DELAY_MS));
 }
 
-element('stop', HTMLButtonElement).addEventListener('pointerdown', () => shownNeeds.forEach(change));
+element('stop', HTMLButtonElement).addEventListener('pointerdown', () => shownNeeds.forEach(scheduleChange));

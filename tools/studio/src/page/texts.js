@@ -74,12 +74,12 @@ export function textKey(key) {
  */
 export function text(key, values = {}) {
   const entry = texts[textKey(key)] ?? '';
-  const sentence = typeof entry === 'string' ? entry : entry[pluralFormOf(Number(values['count']))] ?? '';
+  const sentence = typeof entry === 'string' ? entry : entry[pluralFormIndex(Number(values['count']))] ?? '';
   return sentence.replace(/\{(\w+)\}/g, (placeholder, name) => (name in values ? String(values[name]) : placeholder));
 }
 
 /** @param {number} count @returns {number} which form of a text is for it: rules repeat after a hundred */
-function pluralFormOf(count) {
+function pluralFormIndex(count) {
   return Number(texts['']?.[count < 100 ? count : 100 + (count % 100)]);
 }
 

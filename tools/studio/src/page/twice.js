@@ -1,7 +1,7 @@
 // Children press everything twice. The second press is not for what has come to the place of a button
 // that the first one took away; STOP hears each.
 
-const TWICE_MS = 500;
+const DOUBLE_PRESS_MS = 500;
 const NEAR_PX = 30; // pixels
 
 let isSecondTap = false; // of a finger, whose clicks not every browser counts
@@ -20,7 +20,7 @@ export function ignoreSecondPresses() {
       const pressedButton = event.target instanceof Element ? event.target.closest('button') : null;
       let isSecond = kind !== 'pointerdown' && isSecondPress(event);
       if (kind === 'pointerdown') {
-        isSecond = event.timeStamp - pressed_ms < TWICE_MS && Math.hypot(event.clientX - x, event.clientY - y) < NEAR_PX;
+        isSecond = event.timeStamp - pressed_ms < DOUBLE_PRESS_MS && Math.hypot(event.clientX - x, event.clientY - y) < NEAR_PX;
         isSecondTap = isSecond && /** @type {PointerEvent} */ (event).pointerType === 'touch';
         if (!isSecond) ({ timeStamp: pressed_ms, clientX: x, clientY: y } = event);
       }

@@ -20,7 +20,7 @@ export function robotOf(name) {
 }
 
 /** What a remote control says to every robot: read as sensors are. */
-export const REMOTE = description.remote;
+export const REMOTE_DEVICES = description.remote;
 
 /** @param {string} robotName @param {string} role `sensor` or `actuator` */
 export function devicesOf(robotName, role) {
@@ -38,7 +38,7 @@ const WORDS = new Map(
   ROBOTS.map((robot) => [
     robot.name,
     new Map(
-      [...description.words, ...REMOTE, ...robot.devices].map((word) => [word.text, /** @type {Word} */ (word)]),
+      [...description.words, ...REMOTE_DEVICES, ...robot.devices].map((word) => [word.text, /** @type {Word} */ (word)]),
     ),
   ]),
 );
@@ -60,7 +60,7 @@ export const KINDS = /** @type {Record<string, BlockKind>} */ (blocks.kinds);
 /** @type {Record<string, string>} */
 const CHOICE_LABELS = blocks.says;
 
-const KEY_SETS = new Map(REMOTE.map(({ text: name }) => [name, name.split('_')[0] ?? '']));
+const KEY_SETS = new Map(REMOTE_DEVICES.map(({ text: name }) => [name, name.split('_')[0] ?? '']));
 
 /**
  * What a block is to who looks for it: its kind, and its word if each has its own. A set of keys is one; `block_kinds.py`

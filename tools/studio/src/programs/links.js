@@ -5,7 +5,7 @@
 
 import { isRobot } from '../page/words.js';
 
-const ADDRESS_MARK = '#program=';
+const HASH_PREFIX = '#program=';
 const MOST_LINK_CHARACTERS = 8000; // characters of an address that any program for messages passes on
 const MOST_READ_CHARACTERS = 40_000;
 const MOST_BYTES = 200_000; // of what is inflated
@@ -24,13 +24,13 @@ export async function makeLink({ text, robot: robotName }, pageAddress) {
   let letters = '';
   for (const byte of bytes) letters += String.fromCharCode(byte);
   const packedText = btoa(letters).replaceAll('+', '-').replaceAll('/', '_').replaceAll('=', '');
-  const link = pageAddress.replace(/#.*$/, '') + ADDRESS_MARK + packedText;
+  const link = pageAddress.replace(/#.*$/, '') + HASH_PREFIX + packedText;
   return link.length <= MOST_LINK_CHARACTERS ? link : null;
 }
 
 /** Whether an address brings a program. @param {string} hash the part of the address from `#` on */
 export function holdsProgram(hash) {
-  return hash.startsWith(ADDRESS_MARK);
+  return hash.startsWith(HASH_PREFIX);
 }
 
 /**
@@ -40,7 +40,7 @@ export function holdsProgram(hash) {
  */
 export async function readLink(hash) {
   if (!holdsProgram(hash)) return null;
-  const packedText = hash.slice(ADDRESS_MARK.length);
+  const packedText = hash.slice(HASH_PREFIX.length);
   if (packedText.length > MOST_READ_CHARACTERS || !/^[\w-]+$/.test(packedText)) throw new Error('not a program');
   const letters = atob(packedText.replaceAll('-', '+').replaceAll('_', '/'));
   const bytes = Uint8Array.from(letters, (letter) => letter.charCodeAt(0));

@@ -14,7 +14,7 @@ import { isShippedProgram } from '../start/beginnings.js';
 import { showProgramInstead } from '../start/screens.js';
 import { pageState } from '../page/page_state.js';
 import { labelOf, currentLanguage, text } from '../page/texts.js';
-import { deleteVersion, loadVersions, MOST_CHARACTERS, restoreVersion, sameProgramAs, storeVersion, versionTitle } from './versions.js';
+import { deleteVersion, loadVersions, MOST_CHARACTERS, restoreVersion, isSameProgramAs, storeVersion, versionTitle } from './versions.js';
 import { makeThumbnail } from '../start/thumbnail.js';
 import { robotOf } from '../page/words.js';
 import { storeWork } from './work.js';
@@ -27,20 +27,20 @@ import { messageWithFix } from '../writing/messages.js';
  * @typedef {object} Page what this window needs of the page
  * @property {import('../python.js').Python} python
  * @property {import('./work.js').Work} work
- * @property {(program: {text: string, robot: string, name: string}) => void} put it into the editor
+ * @property {(program: {text: string, robot: string, name: string}) => void} putProgram into the editor
  * @property {() => Promise<Blob | null>} makePicture the program's blocks, as a file
  */
 
 const PUBLIC_ADDRESS_KEY = 'tiniscript.public'; // where others find this page, as somebody has told it
 const READER_CODES = 'TS3'; // of what a robot that reads text cannot do
 const MOST_CODE_BYTES = 900; // bytes: a camera reads no picture with more from a screen
-const MARGIN_MODULES = 4; // modules that must stay white around a code
+const QUIET_ZONE_MODULES = 4; // modules that must stay white around a code
 
-const LINK_HINTS = /** @type {const} */ ({ anywhere: 'share_link_anywhere', network: 'share_link_network', here: 'share_link_here' });
+const LINK_HINT_KEYS = /** @type {const} */ ({ anywhere: 'share_link_anywhere', network: 'share_link_network', here: 'share_link_here' });
 
 export class Programs {
-  #window = element('programs', HTMLDialogElement);
-  #sharedText = element('shared', HTMLTextAreaElement);
+  #dialog = element('programs', HTMLDialogElement);
+  #sharedTextArea = element('shared', HTMLTextAreaElement);
   #hintElement = element('shared_told', HTMLElement);
   #codeCanvas = element('shared_picture', HTMLCanvasElement);
   #linkButton = element('share_link', HTMLButtonElement);
@@ -56,12 +56,12 @@ export class Programs {
   constructor(page) {
     this.#page = page;
     element('my_programs', HTMLButtonElement).addEventListener('click', () => this.#openWindow());
-    element('programs_close', HTMLButtonElement).addEventListener('click', () => this.#window.close());
+    element('programs_close', HTMLButtonElement).addEventListener('click', () => this.#dialog.close());
     // The page's own is behind this window.
     element('programs_stop', HTMLButtonElement).addEventListener('click', () => element('stop', HTMLButtonElement).click());
     for (const id of ['new', 'bar_new']) element(id, HTMLButtonElement).addEventListener('click', () => {
       this.replaceProgram({ text: '', robot: page.work.robot, name: '' });
-      this.#window.close();
+      this.#dialog.close();
     });
     this.#shareDetails.addEventListener('toggle', () => {
       if (this.#shareDetails.open) this.#share('link');
@@ -99,7 +99,7 @@ export class Programs {
   replaceProgram(program) {
     if (pageState.groupName.value && !confirm(text('group_replace'))) return false;
     this.storeVersion();
-    this.#page.put(program);
+    this.#page.putProgram(program);
     return true;
   }
 
@@ -124,8 +124,8 @@ export class Programs {
     this.#nameInput.value = this.#page.work.name.replace(/\.\w+$/, '');
     this.#publicInput.value = loadPublicAddress();
     this.#shareDetails.open = false;
-    delete this.#window.dataset['shared'];
-    this.#window.showModal();
+    delete this.#dialog.dataset['shared'];
+    this.#dialog.showModal();
   }
 
   /** Gives the program another name; its file gets it, too. */
@@ -149,7 +149,7 @@ export class Programs {
     } catch (error) {
       result = { refusal: bugSentence(error) };
     }
-    const hintKey = form === 'line' ? 'share_line_told' : LINK_HINTS[reachOf(this.#pageAddress)];
+    const hintKey = form === 'line' ? 'share_line_told' : LINK_HINT_KEYS[reachOf(this.#pageAddress)];
     const isForOthers = form === 'line' || reachOf(this.#pageAddress) !== 'here';
     if (shareNumber === this.#shareCount) this.#showShared(result, text(hintKey), isForOthers);
   }
@@ -171,8 +171,8 @@ export class Programs {
     const request = { do: 'line', robot: this.#page.work.robot, language: currentLanguage() };
     const answer = await this.#page.python.ask(request, new TextEncoder().encode(this.#page.work.text));
     if (answer.text !== undefined) return { text: answer.text };
-    const isTooMuch = answer.code.startsWith(READER_CODES); // its own fix names a command of the terminal
-    return { refusal: messageWithFix({ ...answer, ...isTooMuch && { fix: text('share_line_else') } }) };
+    const isBeyondReader = answer.code.startsWith(READER_CODES); // its own fix names a command of the terminal
+    return { refusal: messageWithFix({ ...answer, ...isBeyondReader && { fix: text('share_line_else') } }) };
   }
 
   /**
@@ -182,18 +182,18 @@ export class Programs {
    */
   #showShared(result, hint, isForOthers = true) {
     const sharedText = 'text' in result ? result.text : '';
-    const hasCode = sharedText !== '' && new TextEncoder().encode(sharedText).length <= MOST_CODE_BYTES;
-    this.#sharedText.value = sharedText;
-    this.#sharedText.hidden = sharedText === '';
+    const fitsCode = sharedText !== '' && new TextEncoder().encode(sharedText).length <= MOST_CODE_BYTES;
+    this.#sharedTextArea.value = sharedText;
+    this.#sharedTextArea.hidden = sharedText === '';
     this.#copyButton.hidden = sharedText === '' || !navigator.clipboard; // which plain http has not
     this.#hintElement.textContent = 'refusal' in result ? result.refusal
-      : sharedText && isForOthers && !hasCode ? `${hint} ${text('no_picture')}` : hint;
-    this.#codeCanvas.hidden = !hasCode || !isForOthers;
+      : sharedText && isForOthers && !fitsCode ? `${hint} ${text('no_picture')}` : hint;
+    this.#codeCanvas.hidden = !fitsCode || !isForOthers;
     if (!this.#codeCanvas.hidden) {
       generate(sharedText, { minCorrectionLevel: correction.L })
-        .toCanvas(this.#codeCanvas, { padX: MARGIN_MODULES, padY: MARGIN_MODULES, on: [0, 0, 0, 255], off: [255, 255, 255, 255] });
+        .toCanvas(this.#codeCanvas, { padX: QUIET_ZONE_MODULES, padY: QUIET_ZONE_MODULES, on: [0, 0, 0, 255], off: [255, 255, 255, 255] });
     }
-    this.#window.dataset['shared'] = 'refusal' in result ? 'wrong' : sharedText ? 'done' : 'asked';
+    this.#dialog.dataset['shared'] = 'refusal' in result ? 'wrong' : sharedText ? 'done' : 'asked';
   }
 
   async #savePicture() {
@@ -209,10 +209,10 @@ export class Programs {
   }
 
   async #copyShared() {
-    this.#sharedText.focus();
-    this.#sharedText.select();
+    this.#sharedTextArea.focus();
+    this.#sharedTextArea.select();
     try {
-      await navigator.clipboard.writeText(this.#sharedText.value);
+      await navigator.clipboard.writeText(this.#sharedTextArea.value);
       this.#hintElement.textContent = text('copied');
     } catch {
       this.#hintElement.textContent = text('copy_by_hand'); // it is selected
@@ -231,7 +231,7 @@ export class Programs {
   }
 
   #showVersions() {
-    const language = currentLanguage(), isOpen = sameProgramAs(this.#page.work);
+    const language = currentLanguage(), isOpenProgram = isSameProgramAs(this.#page.work);
     const timeFormat = new Intl.DateTimeFormat(language, { dateStyle: 'short', timeStyle: 'short' });
     const versions = loadVersions();
     const titles = versions.map((version, index) => versionTitle(version, versions.length - index));
@@ -244,12 +244,12 @@ export class Programs {
       const title = isShared ? `${ownTitle} (${versions.length - index})` : ownTitle, robotLabel = labelOf(robotOf(version.robot)?.labels ?? {}) || version.robot;
       const openButton = makeButton('', () => {
         this.replaceProgram(version);
-        this.#window.close();
+        this.#dialog.close();
         pageState.note.set(text('opened', { name: title }));
       }, makeThumbnail(version.text, version.robot), makeElement('strong', '', title), timeElement);
       openButton.title = `${title}, ${robotLabel}`;
       const row = makeElement('li', '', openButton);
-      if (isOpen(version)) return row; // it is in the editor, and would be kept again
+      if (isOpenProgram(version)) return row; // it is in the editor, and would be kept again
       const deleteButton = makeButton('', () => this.#deleteVersion(version, row), '×');
       deleteButton.className = 'delete';
       deleteButton.title = deleteButton.ariaLabel = text('program_delete', { name: title });

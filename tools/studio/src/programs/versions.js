@@ -7,7 +7,7 @@
 
 import { labelOfLine } from '../blocks/said.js';
 import { pageState } from '../page/page_state.js';
-import { text as said } from '../page/texts.js';
+import { text as textOf } from '../page/texts.js';
 import { isRobot } from '../page/words.js';
 import { storeText, loadJson } from '../page/kept.js';
 
@@ -37,23 +37,23 @@ export function loadVersions() {
 export function storeVersion({ text, robot: robotName, name }, at_ms = Date.now()) {
   if (!text.trim()) return true;
   if (text.length > MOST_CHARACTERS) return false;
-  const isSame = sameProgramAs({ text, robot: robotName });
+  const isSame = isSameProgramAs({ text, robot: robotName });
   const otherVersions = loadVersions().filter((version) => !isSame(version));
-  return storeAll([{ text, robot: robotName, name, at_ms }, ...otherVersions]);
+  return storeVersions([{ text, robot: robotName, name, at_ms }, ...otherVersions]);
 }
 
 /** @param {Version} version */
 export function deleteVersion(version) {
-  const isSame = sameProgramAs(version);
-  storeAll(loadVersions().filter((other) => !isSame(other)));
+  const isSame = isSameProgramAs(version);
+  storeVersions(loadVersions().filter((other) => !isSame(other)));
 }
 
 /** Keeps a program again that was deleted, where it was, unless another tab has. @param {Version} version @returns {boolean} whether it is kept */
 export function restoreVersion(version) {
   const versions = loadVersions();
-  if (versions.some(sameProgramAs(version))) return true;
+  if (versions.some(isSameProgramAs(version))) return true;
   const olderIndex = versions.findIndex(({ at_ms }) => at_ms < version.at_ms), index = olderIndex < 0 ? versions.length : olderIndex;
-  return storeAll([...versions.slice(0, index), version, ...versions.slice(index)], version); // the others stay where they are, whatever the clock said
+  return storeVersions([...versions.slice(0, index), version, ...versions.slice(index)], version); // the others stay where they are, whatever the clock said
 }
 
 /**
@@ -62,7 +62,7 @@ export function restoreVersion(version) {
  * @param {Version} [wantedVersion] one of them
  * @returns {boolean} whether that one is kept
  */
-function storeAll(versions, wantedVersion = versions[0]) {
+function storeVersions(versions, wantedVersion = versions[0]) {
   const newVersions = versions.slice(0, MOST_VERSIONS);
   while (newVersions.length > 1 && newVersions.reduce((sum, version) => sum + version.text.length, 0) > MOST_CHARACTERS) newVersions.pop();
   while (!storeText(STORAGE_KEY, JSON.stringify(newVersions))) {
@@ -77,7 +77,7 @@ function storeAll(versions, wantedVersion = versions[0]) {
  * @param {{text: string, robot: string}} program
  * @returns {(other: {text: string, robot: string}) => boolean}
  */
-export function sameProgramAs(program) {
+export function isSameProgramAs(program) {
   const key = keyOf(program);
   return (other) => keyOf(other) === key;
 }
@@ -97,7 +97,7 @@ function essenceOf(text) {
  * @param {Version} version @param {number} number @returns {string}
  */
 export function versionTitle({ name, text }, number) {
-  const beginning = pageState.view.value === 'blocks' ? labelOfLine(firstInstruction(text)) || said('program_unnamed', { number }) : beginningOf(text);
+  const beginning = pageState.view.value === 'blocks' ? labelOfLine(firstInstruction(text)) || textOf('program_unnamed', { number }) : beginningOf(text);
   return name.replace(/\.\w+$/, '') || beginning;
 }
 

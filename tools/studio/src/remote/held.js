@@ -30,11 +30,11 @@ export class HeldByHolder {
   }
 
   /** @param {unknown} holder */
-  letGo(holder) {
+  release(holder) {
     this.#heldByHolder.delete(holder);
   }
 
-  letAllGo() {
+  releaseAll() {
     this.#heldByHolder.clear();
   }
 

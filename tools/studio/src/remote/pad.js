@@ -8,19 +8,19 @@ import { element, setText } from '../page/elements.js';
 import { makeElement } from '../page/made.js';
 import { pageState } from '../page/page_state.js';
 import { labelOf, text } from '../page/texts.js';
-import { LINK, REMOTE } from '../page/words.js';
+import { LINK, REMOTE_DEVICES } from '../page/words.js';
 import { readGamepads } from './gamepads.js';
 import { HeldByHolder, areControlsSame, controlsOfStick, NOTHING_HELD } from './held.js';
 
 /** @import { HeldControls } from './held.js' */
 /**
  * @typedef {object} DrivenRobot a robot that can be driven
- * @property {string[]} reads words of a remote control that its program reads
- * @property {(held: HeldControls) => void} tell says it to the robot
- * @property {boolean} [isDeaf] it has no remote control
+ * @property {string[]} remoteWords words of a remote control that its program reads
+ * @property {(held: HeldControls) => void} sendControls says them to the robot
+ * @property {boolean} [lacksRemote] it has no remote control
  */
 
-const KEY_DEVICES = REMOTE.filter((device) => device.is_yes_no);
+const KEY_DEVICES = REMOTE_DEVICES.filter((device) => device.is_yes_no);
 const ARROW_DIRECTIONS = { ArrowUp: [0, 1], ArrowDown: [0, -1], ArrowLeft: [-1, 0], ArrowRight: [1, 0] };
 const KEYBOARD_KEYS = [...Object.keys(ARROW_DIRECTIONS), 'a', 'b']; // in the order of the keys
 const THUMB_SHARE = 0.75; // of its own size, to where the stick ends
@@ -31,15 +31,15 @@ const KEY_OWNER_SELECTOR = 'input, textarea, select, dialog, [contenteditable=tr
 export class Pad {
   #heldByHolder = new HeldByHolder();
   /** @type {HeldControls} */
-  #lastHeld = NOTHING_HELD;
-  #timer = 0;
+  #heldControls = NOTHING_HELD;
+  #repeatTimer = 0;
   #frameRequest = 0; // at the gamepads
   /** @type {number[]} */
   #gamepadNumbers = [];
   /** Those that have to let go before they are heeded. @type {Set<number>} */
   #staleGamepads = new Set();
   /** Fingers on a part, and what each does when it moves. @type {Map<number, (event: PointerEvent) => void>} */
-  #fingerMoves = new Map();
+  #moveHandlers = new Map();
   /** By what is pressed of a keyboard: which key it is. @type {Map<string, number>} */
   #pressedKeys = new Map();
   /** @type {Map<string, DrivenRobot>} */
@@ -66,13 +66,13 @@ export class Pad {
     addEventListener('keydown', (event) => this.#onKeyDown(event));
     addEventListener('keyup', (event) => this.#onKeyUp(event));
     for (const name of ['gamepadconnected', 'gamepaddisconnected']) addEventListener(name, () => this.#pollGamepads());
-    for (const name of ['blur', 'pagehide', 'freeze']) addEventListener(name, () => this.letGo());
+    for (const name of ['blur', 'pagehide', 'freeze']) addEventListener(name, () => this.releaseAll());
     document.addEventListener('visibilitychange', () => {
-      if (document.visibilityState === 'hidden') this.letGo();
+      if (document.visibilityState === 'hidden') this.releaseAll();
     });
-    element('stop', HTMLButtonElement).addEventListener('click', () => this.letGo());
+    element('stop', HTMLButtonElement).addEventListener('click', () => this.releaseAll());
     addEventListener('keydown', (event) => {
-      if (event.key === 'Escape') this.letGo();
+      if (event.key === 'Escape') this.releaseAll();
     }, { capture: true });
     pageState.sideId.subscribe(() => this.#chooseRobot());
     pageState.language.subscribe(() => this.#updateNames());
@@ -81,19 +81,19 @@ export class Pad {
   /** A robot can be driven on a side of the page, or none can any more. @param {'driving' | 'link'} side @param {DrivenRobot | null} robot */
   offerRobot(side, robot) {
     const robotBefore = this.#offeredRobots.get(side);
-    if (robot && robotBefore && robotBefore.isDeaf === robot.isDeaf && `${robotBefore.reads}` === `${robot.reads}`) return;
+    if (robot && robotBefore && robotBefore.lacksRemote === robot.lacksRemote && `${robotBefore.remoteWords}` === `${robot.remoteWords}`) return;
     if (robot) this.#offeredRobots.set(side, robot);
     else this.#offeredRobots.delete(side);
     this.#chooseRobot();
   }
 
   /** Nobody holds anything before he presses anew. */
-  letGo() {
-    this.#heldByHolder.letAllGo();
-    this.#fingerMoves.clear();
+  releaseAll() {
+    this.#heldByHolder.releaseAll();
+    this.#moveHandlers.clear();
     this.#pressedKeys.clear();
     for (const gamepadNumber of readGamepads().keys()) this.#staleGamepads.add(gamepadNumber);
-    this.#updateHeld();
+    this.#updateControls();
   }
 
   /** Which robot is driven follows from what is seen. */
@@ -101,18 +101,18 @@ export class Pad {
     const side = pageState.sideId.value === 'side_real' ? 'link' : 'driving';
     const robot = this.#offeredRobots.get(side);
     if (robot === this.#drivenRobot) return;
-    this.letGo(); // it goes to the robot before
+    this.releaseAll(); // it goes to the robot before
     this.#drivenRobot = robot;
     this.#padElement.hidden = !robot;
     if (!robot) return;
-    const { reads: remoteWords, isDeaf } = robot;
+    const { remoteWords, lacksRemote } = robot;
     if (side === 'link') element('link_said', HTMLElement).after(this.#padElement);
     else element(side, HTMLElement).append(this.#padElement);
     KEY_DEVICES.forEach((device, index) => {
       const keyButton = this.#keyButtons[index];
-      if (keyButton) keyButton.hidden = isDeaf || !remoteWords.includes(device.text);
+      if (keyButton) keyButton.hidden = lacksRemote || !remoteWords.includes(device.text);
     });
-    this.#stickElement.hidden = isDeaf || !remoteWords.some((word) => REMOTE.some((device) => device.text === word && !device.is_yes_no));
+    this.#stickElement.hidden = lacksRemote || !remoteWords.some((word) => REMOTE_DEVICES.some((device) => device.text === word && !device.is_yes_no));
     for (const groupId of ['pad_arrows', 'pad_letters']) {
       const keyGroup = element(groupId, HTMLElement);
       keyGroup.hidden = [...keyGroup.children].every((keyButton) => keyButton instanceof HTMLElement && keyButton.hidden);
@@ -123,25 +123,25 @@ export class Pad {
 
   #updateNames() {
     this.#keyButtons.forEach((keyButton, index) => keyButton.setAttribute('aria-label', labelOf(KEY_DEVICES[index]?.labels ?? {})));
-    if (this.#drivenRobot) setText(element('pad_said', HTMLElement), this.#drivenRobot.isDeaf ? text('pad_deaf') : '');
+    if (this.#drivenRobot) setText(element('pad_said', HTMLElement), this.#drivenRobot.lacksRemote ? text('pad_deaf') : '');
   }
 
   // -- who holds ----------------------------------------------------------------------------------
 
-  /** A part is held by fingers; of one that `isSingleFinger`, by the first. @param {HTMLElement} part @param {(event: PointerEvent) => HeldControls} heldAt @param {boolean} [isSingleFinger] */
-  #listenToFingers(part, heldAt, isSingleFinger) {
-    const onMove = (/** @type {PointerEvent} */ move) => this.#hold(move.pointerId, heldAt(move));
+  /** A part is held by fingers; of one that `isSingleFinger`, by the first. @param {HTMLElement} part @param {(event: PointerEvent) => HeldControls} controlsAt @param {boolean} [isSingleFinger] */
+  #listenToFingers(part, controlsAt, isSingleFinger) {
+    const onMove = (/** @type {PointerEvent} */ move) => this.#hold(move.pointerId, controlsAt(move));
     part.addEventListener('pointerdown', (event) => {
-      if (event.button || (isSingleFinger && [...this.#fingerMoves.values()].includes(onMove))) return;
+      if (event.button || (isSingleFinger && [...this.#moveHandlers.values()].includes(onMove))) return;
       part.setPointerCapture(event.pointerId);
-      this.#fingerMoves.set(event.pointerId, onMove);
+      this.#moveHandlers.set(event.pointerId, onMove);
       onMove(event);
     });
-    part.addEventListener('pointermove', (event) => this.#fingerMoves.get(event.pointerId)?.(event));
+    part.addEventListener('pointermove', (event) => this.#moveHandlers.get(event.pointerId)?.(event));
     for (const name of /** @type {const} */ (['pointerup', 'pointercancel', 'lostpointercapture'])) {
       part.addEventListener(name, ({ pointerId }) => {
-        this.#fingerMoves.delete(pointerId);
-        this.#letHolderGo(pointerId);
+        this.#moveHandlers.delete(pointerId);
+        this.#release(pointerId);
       });
     }
   }
@@ -155,7 +155,7 @@ export class Pad {
 
   /** @param {KeyboardEvent} event */
   #onKeyDown(event) {
-    if (!this.#drivenRobot || this.#drivenRobot.isDeaf || event.ctrlKey || event.metaKey || event.altKey) return;
+    if (!this.#drivenRobot || this.#drivenRobot.lacksRemote || event.ctrlKey || event.metaKey || event.altKey) return;
     const { target } = event;
     if (!(target instanceof Element)) return;
     const buttonIndex = PRESSING_KEYS.includes(event.key) ? this.#keyButtons.findIndex((button) => button === target) : -1;
@@ -187,7 +187,7 @@ export class Pad {
   #pollGamepads() {
     cancelAnimationFrame(this.#frameRequest);
     const heldByGamepad = readGamepads();
-    for (const gamepadNumber of this.#gamepadNumbers) if (!heldByGamepad.has(gamepadNumber)) this.#letHolderGo(gamepadHolder(gamepadNumber));
+    for (const gamepadNumber of this.#gamepadNumbers) if (!heldByGamepad.has(gamepadNumber)) this.#release(gamepadHolder(gamepadNumber));
     this.#gamepadNumbers = [...heldByGamepad.keys()];
     if (!this.#drivenRobot || !heldByGamepad.size) return;
     for (const [gamepadNumber, controls] of heldByGamepad) {
@@ -202,29 +202,29 @@ export class Pad {
   /** @param {unknown} holder @param {HeldControls} controls */
   #hold(holder, controls) {
     this.#heldByHolder.hold(holder, controls);
-    this.#updateHeld();
+    this.#updateControls();
   }
 
   /** @param {unknown} holder */
-  #letHolderGo(holder) {
-    this.#heldByHolder.letGo(holder);
-    this.#updateHeld();
+  #release(holder) {
+    this.#heldByHolder.release(holder);
+    this.#updateControls();
   }
 
-  #updateHeld() {
+  #updateControls() {
     const controls = this.#heldByHolder.combinedControls;
-    if (areControlsSame(controls, this.#lastHeld)) return;
-    this.#lastHeld = controls;
+    if (areControlsSame(controls, this.#heldControls)) return;
+    this.#heldControls = controls;
     this.#thumbElement.style.setProperty('translate', `${controls.x * THUMB_SHARE}% ${-controls.y * THUMB_SHARE}%`);
     this.#keyButtons.forEach((part, keyIndex) => part.classList.toggle('held', Boolean(controls.keys & (1 << keyIndex))));
-    this.#sendHeld();
+    this.#sendControls();
   }
 
-  #sendHeld() {
-    clearTimeout(this.#timer);
-    if (!this.#drivenRobot || this.#drivenRobot.isDeaf) return;
-    this.#drivenRobot.tell(this.#lastHeld);
-    if (!areControlsSame(this.#lastHeld, NOTHING_HELD)) this.#timer = window.setTimeout(() => this.#sendHeld(), LINK.keys_every_ms);
+  #sendControls() {
+    clearTimeout(this.#repeatTimer);
+    if (!this.#drivenRobot || this.#drivenRobot.lacksRemote) return;
+    this.#drivenRobot.sendControls(this.#heldControls);
+    if (!areControlsSame(this.#heldControls, NOTHING_HELD)) this.#repeatTimer = window.setTimeout(() => this.#sendControls(), LINK.keys_every_ms);
   }
 }
 

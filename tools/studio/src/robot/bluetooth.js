@@ -28,12 +28,12 @@ export async function chooseDevice() {
 
 export class BluetoothPort {
   isRadio = true;
-  goneBy = 'radio_gone';
+  lossReason = 'radio_gone';
   #device;
   #baud;
   /** @type {any} */
-  #input = null;
-  #pause_ms = 0; // after a write
+  #writeCharacteristic = null;
+  #writePause_ms = 0; // after a write
   #lastWrite = Promise.resolve();
   #isClosing = false;
 
@@ -43,24 +43,24 @@ export class BluetoothPort {
     this.#baud = baud;
   }
 
-  /** @param {(data: Uint8Array) => void} onData @param {() => void} onGone */
-  async open(onData, onGone) {
+  /** @param {(data: Uint8Array) => void} onData @param {() => void} onDisconnect */
+  async open(onData, onDisconnect) {
     this.#device.addEventListener('gattserverdisconnected', () => {
-      if (!this.#isClosing) onGone();
+      if (!this.#isClosing) onDisconnect();
     });
-    let notifier;
+    let notifyCharacteristic;
     try {
       const server = await this.#device.gatt.connect();
-      const service = await this.#findService(server);
-      this.#input = service.in;
-      notifier = service.out;
+      const characteristics = await this.#findCharacteristics(server);
+      this.#writeCharacteristic = characteristics.in;
+      notifyCharacteristic = characteristics.out;
       // An HM-10 loses bytes that come faster than its UART passes them on.
-      if (service.isSlow) this.#pause_ms = Math.ceil((MOST_WRITE_BYTES * 10_000) / this.#baud);
-      notifier.addEventListener('characteristicvaluechanged', (/** @type {any} */ event) => {
+      if (characteristics.isSlow) this.#writePause_ms = Math.ceil((MOST_WRITE_BYTES * 10_000) / this.#baud);
+      notifyCharacteristic.addEventListener('characteristicvaluechanged', (/** @type {any} */ event) => {
         const { value } = event.target;
         onData(new Uint8Array(value.buffer, value.byteOffset, value.byteLength));
       });
-      await notifier.startNotifications();
+      await notifyCharacteristic.startNotifications();
     } catch (error) {
       if (error instanceof ConnectionFailure) throw error;
       throw new ConnectionFailure(/** @type {Error} */ (error).name === 'NetworkError' ? 'link_silent' : 'radio_broken');
@@ -68,7 +68,7 @@ export class BluetoothPort {
   }
 
   /** @param {any} server */
-  async #findService(server) {
+  async #findCharacteristics(server) {
     try {
       const service = await server.getPrimaryService(NORDIC_SERVICE);
       return {
@@ -90,18 +90,18 @@ export class BluetoothPort {
 
   /** Writes after what is being written. @param {Uint8Array} data @returns {Promise<void>} */
   write(data) {
-    const write = this.#lastWrite.then(() => this.#write(data));
-    this.#lastWrite = write.catch(() => {});
-    return write;
+    const newWrite = this.#lastWrite.then(() => this.#writeChunks(data));
+    this.#lastWrite = newWrite.catch(() => {});
+    return newWrite;
   }
 
   /** @param {Uint8Array} data */
-  async #write(data) {
+  async #writeChunks(data) {
     for (let offset = 0; offset < data.length; offset += MOST_WRITE_BYTES) {
       const chunk = data.slice(offset, offset + MOST_WRITE_BYTES);
-      if (this.#input.properties.writeWithoutResponse) await this.#input.writeValueWithoutResponse(chunk);
-      else await this.#input.writeValueWithResponse(chunk);
-      if (this.#pause_ms) await pause(this.#pause_ms);
+      if (this.#writeCharacteristic.properties.writeWithoutResponse) await this.#writeCharacteristic.writeValueWithoutResponse(chunk);
+      else await this.#writeCharacteristic.writeValueWithResponse(chunk);
+      if (this.#writePause_ms) await pause(this.#writePause_ms);
     }
   }
 

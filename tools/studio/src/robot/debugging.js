@@ -1,6 +1,6 @@
 // Breakpoints and steps of a program on a real robot, and the values where it is halted.
 
-import { sayOfPlace } from '../blocks/said.js';
+import { sentenceAtPlace } from '../blocks/said.js';
 import { element, setHidden } from '../page/elements.js';
 import { pageState } from '../page/page_state.js';
 import { showRows, variableText } from '../page/rows.js';
@@ -16,9 +16,9 @@ import { StopOffsets } from '../writing/parts.js';
  * @property {(request: Record<string, unknown>, onDone?: () => void, isQuiet?: boolean) => Promise<Answer | null>} ask null if nothing came of it, which was said unless it is quiet
  * @property {() => void} uploadPaused sends the program, and has it halt before its first instruction
  * @property {(key: import('../page/texts.js').Key) => void} say
- * @property {(sentence: () => string, name: string) => void} sayAnew a sentence that is made anew in another language or view
- * @property {() => Promise<boolean>} canGetHalting whether there is a firmware with breakpoints for such a robot
- * @property {() => void} getHalting
+ * @property {(makeSentence: () => string, name: string) => void} sayAnew a sentence that is made anew in another language or view
+ * @property {() => Promise<boolean>} canGetHaltingFirmware whether there is a firmware with breakpoints for such a robot
+ * @property {() => void} getHaltingFirmware
  * @property {import('./place.js').RunningPlace} place
  * @property {import('./recorder.js').Recorder} recorder
  */
@@ -35,7 +35,7 @@ export class Debugging {
   /** Its places; none once the text is another one. @type {CheckResult['places']} */
   #places = [];
   #stopOffsets = new StopOffsets();
-  #sentPlaces = ''; // the places that the robot has
+  #sentPlacesKey = ''; // the places that the robot has
   #isRunning = false;
   #isStepping = false;
   #isHaltingFirst = false; // it is to halt before its first instruction
@@ -55,17 +55,17 @@ export class Debugging {
     this.#page = page;
     this.#stepButton.addEventListener('click', () => this.#onStep());
     this.#continueButton.addEventListener('click', () => this.#resume(false));
-    element('link_get_halting', HTMLButtonElement).addEventListener('click', () => page.getHalting());
-    pageState.breakpoints.subscribe(() => this.#breakpointsChanged());
+    element('link_get_halting', HTMLButtonElement).addEventListener('click', () => page.getHaltingFirmware());
+    pageState.breakpoints.subscribe(() => this.#onBreakpointsChange());
     pageState.programText.subscribe(() => { this.#places = []; });
     for (const observable of [pageState.language, pageState.areBlocksNamed]) observable.subscribe(() => this.#show());
   }
 
   /** A robot is connected, or none any more. @param {RobotInfo | null} robotInfo */
-  meet(robotInfo) {
+  onRobotChange(robotInfo) {
     this.#robotInfo = robotInfo;
     this.#program = null;
-    this.#sentPlaces = '';
+    this.#sentPlacesKey = '';
     this.#isRunning = robotInfo?.is_running ?? false;
     this.#endHalt();
   }
@@ -81,9 +81,9 @@ export class Debugging {
     const requestNumber = ++this.#requestCount;
     this.#program = program;
     this.#places = program.places;
-    this.#findPlaces();
+    this.#updateStopOffsets();
     this.#isHaltingFirst = isPaused;
-    this.#sentPlaces = '';
+    this.#sentPlacesKey = '';
     this.#show();
     if (!this.#canHalt || !(isPaused || this.#haltOffsets.length)) return null;
     return async (isStarted) => {
@@ -105,8 +105,8 @@ export class Debugging {
   }
 
   /** A line is sent: it takes the robot's places away. */
-  onLine() {
-    if (this.#sentPlaces) this.#sentPlaces = UNKNOWN_PLACES;
+  onLineSent() {
+    if (this.#sentPlacesKey) this.#sentPlacesKey = UNKNOWN_PLACES;
   }
 
   /** @param {RobotEvent} event */
@@ -134,7 +134,7 @@ export class Debugging {
 
   // -- places -------------------------------------------------------------------------------------
 
-  #findPlaces() {
+  #updateStopOffsets() {
     this.#stopOffsets.update(pageState.breakpoints.value, this.#places);
   }
 
@@ -145,8 +145,8 @@ export class Debugging {
     return [...new Set(haltOffsets)];
   }
 
-  #breakpointsChanged() {
-    this.#findPlaces();
+  #onBreakpointsChange() {
+    this.#updateStopOffsets();
     if (this.#program && this.#canHalt && !this.#isHaltingFirst) this.#sendPlaces();
     this.#show();
   }
@@ -155,13 +155,13 @@ export class Debugging {
   async #sendPlaces() {
     const haltOffsets = this.#haltOffsets;
     const places = (this.#isHaltingFirst ? [0, ...haltOffsets.filter((offset) => offset !== 0)] : haltOffsets).slice(0, LINK.most_breakpoints);
-    if (places.join() === this.#sentPlaces) return true;
-    const sentPlaces = this.#sentPlaces = places.join();
+    if (places.join() === this.#sentPlacesKey) return true;
+    const sentPlacesKey = this.#sentPlacesKey = places.join();
     if (await this.#page.ask({ do: 'break', places }) === null) {
-      if (this.#sentPlaces === sentPlaces) this.#sentPlaces = UNKNOWN_PLACES;
+      if (this.#sentPlacesKey === sentPlacesKey) this.#sentPlacesKey = UNKNOWN_PLACES;
       return false;
     }
-    return this.#sentPlaces !== UNKNOWN_PLACES || this.#sendPlaces();
+    return this.#sentPlacesKey !== UNKNOWN_PLACES || this.#sendPlaces();
   }
 
   // -- a halt -------------------------------------------------------------------------------------
@@ -178,8 +178,8 @@ export class Debugging {
     this.#halt = null;
     this.#isHaltRead = false;
     this.#isStepping = isStep;
-    this.#page.place.goOn();
-    this.#page.recorder.goOn();
+    this.#page.place.resume();
+    this.#page.recorder.resume();
     this.#page.say('say_started');
     this.#show();
     this.#page.ask({ do: 'resume', is_step: isStep });
@@ -198,15 +198,15 @@ export class Debugging {
     const halt = this.#halt = {};
     this.#isHaltingFirst = false;
     this.#sendPlaces();
-    this.#page.place.hold(place?.[0] ?? offset, checksum);
-    if (place) this.#page.sayAnew(() => this.#sayOf('robot_held', 'robot_held_block', programText, place), 'robot_held');
+    this.#page.place.halt(place?.[0] ?? offset, checksum);
+    if (place) this.#page.sayAnew(() => this.#sentenceAt('robot_held', 'robot_held_block', programText, place), 'robot_held');
     this.#show();
     this.#readValues(halt, taskNumber);
   }
 
   /** @param {import('../page/texts.js').Key} lineKey @param {import('../page/texts.js').Key} blockKey @param {string} programText @param {CheckResult['places'][number]} place */
-  #sayOf(lineKey, blockKey, programText, [, line, column]) {
-    return sayOfPlace(lineKey, blockKey, programText, { line, column });
+  #sentenceAt(lineKey, blockKey, programText, [, line, column]) {
+    return sentenceAtPlace(lineKey, blockKey, programText, { line, column });
   }
 
   /** @param {object} halt @param {number} taskNumber */
@@ -227,9 +227,9 @@ export class Debugging {
   }
 
   /** @param {boolean} lacksBreakpoints there are breakpoints, and the robot cannot halt at them */
-  async #offerHalting(lacksBreakpoints) {
+  async #offerHaltingFirmware(lacksBreakpoints) {
     const robotInfo = this.#robotInfo;
-    const isAvailable = lacksBreakpoints && await this.#page.canGetHalting();
+    const isAvailable = lacksBreakpoints && await this.#page.canGetHaltingFirmware();
     if (robotInfo === this.#robotInfo) setHidden(element('link_halting', HTMLElement), !isAvailable || !pageState.breakpoints.value.length);
   }
 
@@ -238,18 +238,18 @@ export class Debugging {
     this.#continueButton.disabled = !this.#halt;
     setHidden(this.#stepButton, !this.#canHalt && !pageState.breakpoints.value.length); // it says why the robot cannot
     setHidden(this.#continueButton, !this.#canHalt);
-    const isTooMany = this.#haltOffsets.length > LINK.most_breakpoints;
+    const hasTooManyBreakpoints = this.#haltOffsets.length > LINK.most_breakpoints;
     const notice = element('link_breakpoints', HTMLElement);
     const lacksBreakpoints = this.#robotInfo !== null && !this.#canHalt && pageState.breakpoints.value.length > 0;
-    notice.textContent = lacksBreakpoints ? text('say_no_breakpoints') : isTooMany ? text('link_most_breakpoints', { most: LINK.most_breakpoints }) : '';
-    setHidden(notice, !lacksBreakpoints && !isTooMany);
-    this.#offerHalting(lacksBreakpoints);
+    notice.textContent = lacksBreakpoints ? text('say_no_breakpoints') : hasTooManyBreakpoints ? text('link_most_breakpoints', { most: LINK.most_breakpoints }) : '';
+    setHidden(notice, !lacksBreakpoints && !hasTooManyBreakpoints);
+    this.#offerHaltingFirmware(lacksBreakpoints);
     const valueList = element('link_values', HTMLElement);
     const { places = [], variables = [], text: programText = '' } = this.#program ?? {};
     const rows = this.#variables.length || this.#otherTasks.length ? [
       ...variables.map(({ name, is_yes_no }, index) => [name, variableText(this.#variables[index], is_yes_no)]),
       ...this.#otherTasks.map(([state, taskOffset]) => [
-        this.#sayOf('task_at', 'task_at_block', programText, places.findLast(([offset]) => offset <= taskOffset) ?? [0, 1, 1, 1, 1]), text(textKey(`task_${state}`)),
+        this.#sentenceAt('task_at', 'task_at_block', programText, places.findLast(([offset]) => offset <= taskOffset) ?? [0, 1, 1, 1, 1]), text(textKey(`task_${state}`)),
       ]),
     ] : [];
     showRows(valueList, rows);

@@ -10,11 +10,11 @@ import { LINK, robotOf } from '../page/words.js';
 /** @import { RobotListener, RobotInfo } from './transport.js' */
 
 /**
- * What carries bytes. `write` keeps the order; `onGone` is called once, when nothing is carried any more.
+ * What carries bytes. `write` keeps the order; `onDisconnect` is called once, when nothing is carried any more.
  * @typedef {object} Port
  * @property {boolean} isRadio
- * @property {string} goneBy why the connection is over when the port is
- * @property {(onData: (data: Uint8Array) => void, onGone: () => void) => Promise<void>} open rejects with a ConnectionFailure
+ * @property {string} lossReason why the connection is over when the port is
+ * @property {(onData: (data: Uint8Array) => void, onDisconnect: () => void) => Promise<void>} open rejects with a ConnectionFailure
  * @property {(data: Uint8Array) => Promise<void>} write
  * @property {() => Promise<void>} close
  */
@@ -23,7 +23,7 @@ import { LINK, robotOf } from '../page/words.js';
  * Where the keys of robots are stored, as the text of a file of keys; other tabs change it, too.
  * @typedef {object} KeyStore
  * @property {() => string} load
- * @property {(keys: string) => unknown} keep
+ * @property {(keys: string) => unknown} store
  */
 
 const OPEN_LIMIT_MS = 20_000; // a radio that looks for its robot
@@ -42,12 +42,12 @@ export class DirectRobot extends RequestQueue {
   #port;
   #isOpen = false;
   #isExchanging = false;
-  #isNewDue = false;
+  #isExchangeDue = false;
   #byteCount = 0;
   /** @type {number[]} */
   #receivedBytes = [];
   #unlock = () => {};
-  /** @type {(why: Error) => void} */
+  /** @type {(error: Error) => void} */
   #rejectConnect = () => {};
   #keyStore;
   /** The keys that the session knows to be stored. */
@@ -94,7 +94,7 @@ export class DirectRobot extends RequestQueue {
           for (const byte of data) this.#receivedBytes.push(byte);
           this.send();
         },
-        () => this.end(new ConnectionFailure(this.#port.goneBy)),
+        () => this.end(new ConnectionFailure(this.#port.lossReason)),
       );
       opening.then(async () => {
         if (this.isOver) await this.#port.close(); // it was left meanwhile
@@ -149,7 +149,7 @@ export class DirectRobot extends RequestQueue {
   stop() {
     if (this.isOver) return;
     this.#port.write(STOP_BYTES).catch(() => {});
-    for (const { id } of this.requests.splice(0)) this.takeNews({ id, failure: 'stopped_elsewhere' });
+    for (const { id } of this.requests.splice(0)) this.handleNews({ id, failure: 'stopped_elsewhere' });
     this.ask({ do: 'stop' }).catch(() => {});
   }
 
@@ -163,39 +163,39 @@ export class DirectRobot extends RequestQueue {
   async send() {
     if (this.isOver || !this.#isOpen) return;
     if (this.#isExchanging) {
-      this.#isNewDue = true;
+      this.#isExchangeDue = true;
       return;
     }
     this.#isExchanging = true;
-    clearTimeout(this.timer);
+    clearTimeout(this.sendTimer);
     let wait_ms = LONGEST_WAIT_MS;
     try {
       do {
-        this.#isNewDue = false;
+        this.#isExchangeDue = false;
         const now_ms = Math.floor(performance.now());
         const data = new Uint8Array(this.#receivedBytes.splice(0));
         const requests = this.requests.splice(0);
-        const answer = await this.#python.ask({ do: 'link', now_ms, asked: requests, ...this.#newKeys() }, data);
-        const areKept = !answer.keys || this.#keepKeys(answer.keys); // before the robot gets one
+        const answer = await this.#python.ask({ do: 'link', now_ms, asked: requests, ...this.#takeChangedKeys() }, data);
+        const areKeysStored = !answer.keys || this.#storeKeys(answer.keys); // before the robot gets one
         if (this.isOver) return;
-        if (!areKept) this.#isNewDue = true; // the session repeats what it has sent
+        if (!areKeysStored) this.#isExchangeDue = true; // the session repeats what it has sent
         else if (answer.send) await this.#port.write(bytesOf(answer.send));
         for (const news of answer.news) {
-          this.takeNews(news);
+          this.handleNews(news);
           await undefined; // who has asked hears its answer before what comes next
         }
         if (answer.wakes_ms !== null) wait_ms = Math.max(0, Math.min(LONGEST_WAIT_MS, answer.wakes_ms - performance.now()));
-      } while (this.#isNewDue && !this.isOver);
+      } while (this.#isExchangeDue && !this.isOver);
     } catch (error) {
-      this.end(error instanceof ConnectionFailure ? error : new ConnectionFailure(this.#port.goneBy, ''));
+      this.end(error instanceof ConnectionFailure ? error : new ConnectionFailure(this.#port.lossReason, ''));
     } finally {
       this.#isExchanging = false;
     }
-    if (!this.isOver) this.timer = window.setTimeout(() => this.send(), wait_ms);
+    if (!this.isOver) this.sendTimer = window.setTimeout(() => this.send(), wait_ms);
   }
 
   /** The stored keys, if somebody else has changed them, such as another tab. */
-  #newKeys() {
+  #takeChangedKeys() {
     const kept = this.#keyStore.load();
     if (kept === this.#storedKeys) return {};
     this.#storedKeys = kept;
@@ -203,10 +203,10 @@ export class DirectRobot extends RequestQueue {
   }
 
   /** Stores the session's keys if it knows those that are stored; returns whether it does. @param {string} keys */
-  #keepKeys(keys) {
+  #storeKeys(keys) {
     if (this.#keyStore.load() !== this.#storedKeys) return false;
     this.#storedKeys = keys;
-    this.#keyStore.keep(keys);
+    this.#keyStore.store(keys);
     return true;
   }
 

@@ -19,7 +19,7 @@ export class ActivityLine {
   }
 
   /** A robot is connected, or none any more. @param {import('./transport.js').RobotInfo | null} robotInfo */
-  meet(robotInfo) {
+  onRobotChange(robotInfo) {
     this.#activity = !robotInfo ? '' : robotInfo.is_running ? 'other' : 'still';
     this.#isWatched = false;
     this.#show();

@@ -37,14 +37,14 @@ export function isWholeFirmware(firmware, board) {
  * @param {any} port
  * @param {string} board
  * @param {Uint8Array} firmware
- * @param {(part: number) => void} onProgress from 0 to 1
+ * @param {(fraction: number) => void} onProgress from 0 to 1
  * @param {AbortSignal} cancelSignal somebody wants it no more
  */
 export async function flashEsp32(port, board, firmware, onProgress, cancelSignal) {
   if (!isWholeFirmware(firmware, board)) throw new ConnectionFailure('flash_bad_image');
   const transport = new Transport(port);
-  const write = transport.write.bind(transport);
-  transport.write = (data) => withTimeout(WRITE_LIMIT_MS, write(data), 'port_stuck');
+  const unlimitedWrite = transport.write.bind(transport);
+  transport.write = (data) => withTimeout(WRITE_LIMIT_MS, unlimitedWrite(data), 'port_stuck');
   const loader = new ESPLoader({ transport, baudrate: ROM_BAUD, romBaudrate: ROM_BAUD, terminal: SILENT_TERMINAL });
   let isWriting = false;
   try {

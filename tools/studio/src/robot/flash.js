@@ -28,7 +28,7 @@ export async function loadFirmware(wantedFirmware, board, watchOptions) {
 }
 
 /** Has what writes onto a board fetched. @param {string} board @returns {Promise<unknown>} */
-export async function loadWriter(board) {
+export async function preloadWriter(board) {
   return BOARDS[board] ? null : import('./esp32.js');
 }
 
@@ -37,7 +37,7 @@ export async function loadWriter(board) {
  * @param {any} port of the browser
  * @param {string} board
  * @param {Uint8Array} data
- * @param {(part: number) => void} onProgress
+ * @param {(fraction: number) => void} onProgress
  * @param {AbortSignal} cancelSignal
  */
 export async function flashBoard(port, board, data, onProgress, cancelSignal) {
@@ -57,19 +57,19 @@ export async function flashBoard(port, board, data, onProgress, cancelSignal) {
 }
 
 /** What there is beside this page. @param {WatchOptions} [watchOptions] @returns {Promise<Firmware[]>} */
-export async function fetchFirmwares(watchOptions) {
+export async function fetchFirmwareList(watchOptions) {
   return JSON.parse(new TextDecoder().decode(await fetchBytes('firmware.json', watchOptions)));
 }
 
 /** @param {string} robotName @returns {string} the title of its firmware with breakpoints */
-export function haltingTitle(robotName) {
+export function haltingFirmwareTitle(robotName) {
   return `${robotName}_breakpoints`;
 }
 
 /** @param {WantedFirmware} which @param {string} board @param {WatchOptions} watchOptions */
 async function fetchFirmware({ robot: robotName, language, halts }, board, watchOptions) {
-  const firmwareList = await fetchFirmwares(watchOptions);
-  const titles = halts ? [haltingTitle(robotName)] : [`${robotName}_${language}`, robotName];
+  const firmwareList = await fetchFirmwareList(watchOptions);
+  const titles = halts ? [haltingFirmwareTitle(robotName)] : [`${robotName}_${language}`, robotName];
   const firmware = titles.map((title) => firmwareList.find((candidate) => candidate.title === title && candidate.board === board)).find(Boolean);
   if (!firmware) throw new ConnectionFailure('flash_none');
   return fetchBytes(firmware.file, watchOptions);

@@ -11,10 +11,10 @@ import { currentLanguage } from '../page/texts.js';
 /**
  * @typedef {object} Panel what is used of the part with a robot
  * @property {import('./speech.js').Speech} speech
- * @property {() => any} port the known one that is chosen, if one is
+ * @property {() => any} getChosenPort the known one that is chosen, if one is
  * @property {() => boolean} isFree
  * @property {(isBusy: boolean) => void} setBusy
- * @property {(port: any) => Promise<void>} meet the robot that the board is then
+ * @property {(port: any) => Promise<void>} connect to the robot that the board is then
  */
 
 /** What people call the boards that can be written from here. @type {Record<string, string>} */
@@ -31,7 +31,7 @@ export class Flashing {
   #haltsInput = element('flash_halts', HTMLInputElement);
   #progressBar = element('flash_progress', HTMLProgressElement);
   #cancelButton = element('flash_cancel', HTMLButtonElement);
-  #canceller = new AbortController();
+  #abortController = new AbortController();
 
   /** @param {Panel} panel */
   constructor(panel) {
@@ -41,7 +41,7 @@ export class Flashing {
     pageState.robotName.subscribe(() => this.#firmwareList && this.#offerBoards());
     element('flash_write', HTMLButtonElement).addEventListener('click', () => this.#flash());
     element('flash_open', HTMLButtonElement).addEventListener('click', () => this.#fileInput.click());
-    this.#cancelButton.addEventListener('click', () => this.#canceller.abort());
+    this.#cancelButton.addEventListener('click', () => this.#abortController.abort());
     this.#fileInput.addEventListener('change', () => {
       this.#file = this.#fileInput.files?.[0] ?? null;
       panel.speech.say('say_file', { name: asPlainText(this.#file?.name ?? '') });
@@ -51,7 +51,7 @@ export class Flashing {
   /** A page without firmware, or a browser without ports, offers nothing. */
   async #offerBoards() {
     if (!hasSerial) return;
-    const firmwareList = await (this.#firmwareList ??= fetchFirmwareList());
+    const firmwareList = await (this.#firmwareList ??= tryFetchFirmwareList());
     const availableBoards = new Set(firmwareList.map((firmware) => firmware.board));
     if (!this.#boardSelect.options.length) {
       this.#boardSelect.replaceChildren(...Object.entries(BOARD_NAMES).filter(([board]) => availableBoards.has(board)).map(([board, name]) => new Option(name, board)));
@@ -65,18 +65,18 @@ export class Flashing {
   /** The boards for which there is a firmware of the robot with breakpoints in the place of its reader of text. */
   async #findHaltingBoards() {
     if (!hasSerial) return [];
-    const { haltingTitle } = await import('./flash.js');
-    const title = haltingTitle(pageState.robotName.value);
-    return (await (this.#firmwareList ??= fetchFirmwareList())).filter((firmware) => firmware.title === title).map(({ board }) => board);
+    const { haltingFirmwareTitle } = await import('./flash.js');
+    const title = haltingFirmwareTitle(pageState.robotName.value);
+    return (await (this.#firmwareList ??= tryFetchFirmwareList())).filter((firmware) => firmware.title === title).map(({ board }) => board);
   }
 
   /** Whether a board can get a firmware with breakpoints from here. */
-  async canHalt() {
+  async canOfferHaltingFirmware() {
     return (await this.#findHaltingBoards()).length > 0;
   }
 
   /** Somebody wants that firmware: whether it is written is the next question. */
-  async offerHalting() {
+  async offerHaltingFirmware() {
     await this.#offerBoards();
     const boards = await this.#findHaltingBoards();
     if (!boards.includes(this.#boardSelect.value)) this.#boardSelect.value = boards[0] ?? '';
@@ -87,13 +87,13 @@ export class Flashing {
   }
 
   async #flash() {
-    const { speech, port: chosenKnownPort, isFree, setBusy, meet } = this.#panel;
+    const { speech, getChosenPort, isFree, setBusy, connect } = this.#panel;
     if (!isFree()) return;
     const wantedFirmware = this.#file ?? { robot: pageState.robotName.value, language: currentLanguage(), halts: this.#haltsInput.checked };
-    const choosingPort = chosenKnownPort() ? Promise.resolve(chosenKnownPort()) : choosePort();
-    this.#canceller = new AbortController();
+    const choosingPort = getChosenPort() ? Promise.resolve(getChosenPort()) : choosePort();
+    this.#abortController = new AbortController();
     const board = this.#boardSelect.value;
-    const { signal } = this.#canceller;
+    const { signal } = this.#abortController;
     setBusy(true);
     try {
       const port = await choosingPort;
@@ -101,14 +101,14 @@ export class Flashing {
       this.#progressBar.value = 0;
       this.#progressBar.hidden = this.#cancelButton.hidden = false;
       const watchOptions = { onWait: () => speech.say('say_fetching_waits'), cancelSignal: signal };
-      const { loadFirmware, flashBoard, loadWriter } = await watchPromise(import('./flash.js'), watchOptions);
+      const { loadFirmware, flashBoard, preloadWriter } = await watchPromise(import('./flash.js'), watchOptions);
       const data = await loadFirmware(wantedFirmware, board, watchOptions);
-      await watchPromise(loadWriter(board), watchOptions);
+      await watchPromise(preloadWriter(board), watchOptions);
       speech.say('say_flashing');
-      await flashBoard(port, board, data, (share) => { this.#progressBar.value = share; }, signal);
+      await flashBoard(port, board, data, (fraction) => { this.#progressBar.value = fraction; }, signal);
       setBusy(false);
       this.#cancelButton.hidden = true;
-      await meet(port);
+      await connect(port);
     } catch (error) {
       const reason = signal.aborted ? 'flash_not_begun' : /** @type {Error} */ (error).name === 'TimeoutError' ? 'flash_held' : 'bug';
       speech.sayFailure(error instanceof ConnectionFailure ? error : new ConnectionFailure(reason, reason === 'bug' ? String(error) : ''));
@@ -122,10 +122,10 @@ export class Flashing {
 }
 
 /** What firmware there is beside the page; a page by itself has none. */
-async function fetchFirmwareList() {
+async function tryFetchFirmwareList() {
   try {
-    const { fetchFirmwares } = await import('./flash.js');
-    return await fetchFirmwares();
+    const { fetchFirmwareList } = await import('./flash.js');
+    return await fetchFirmwareList();
   } catch {
     return [];
   }

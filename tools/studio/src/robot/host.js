@@ -15,8 +15,8 @@ import { removeForeignWorkers } from '../page/offline.js';
 
 const TOKEN_KEY = 'tiniscript.token';
 const LOADED_CODE_KEY = 'tiniscript.loaded'; // the code for which the page was loaded again
-const BEAT_MS = 100;
-const LEAST_BEAT_MS = 30; // between two beats, as between two words of a remote control: a class takes forty requests a second of a pupil
+const BEAT_INTERVAL_MS = 100;
+const LEAST_BEAT_INTERVAL_MS = 30; // between two beats, as between two words of a remote control: a class takes forty requests a second of a pupil
 const SILENCE_LIMIT_MS = 3000; // without an answer
 const REQUEST_LIMIT_MS = 2000;
 const CONNECT_TRIES = 3;
@@ -106,13 +106,13 @@ export class HostRobot extends RequestQueue {
   #isConnected = false;
   #lastNewsNumber = 0;
   #isAsking = false;
-  #heard_ms = 0;
-  #beatBegan_ms = -LEAST_BEAT_MS; // the newest beat
-  /** @type {(about: RobotInfo) => void} */
+  #lastAnswer_ms = 0;
+  #lastBeat_ms = -LEAST_BEAT_INTERVAL_MS; // the newest beat
+  /** @type {(robotInfo: RobotInfo) => void} */
   #resolveConnect = () => {};
-  /** @type {(why: Error) => void} */
+  /** @type {(error: Error) => void} */
   #rejectConnect = () => {};
-  #newestPress = 0; // the newest press of this connection
+  #newestPressNumber = 0; // the newest press of this connection
 
   /**
    * Connects; rejects with a ConnectionFailure.
@@ -141,17 +141,17 @@ export class HostRobot extends RequestQueue {
       } catch (error) {
         if (error instanceof ConnectionFailure) this.end(error);
         else if (tryNumber === CONNECT_TRIES) this.end(new ConnectionFailure('host_gone'));
-        else await pause(BEAT_MS);
+        else await pause(BEAT_INTERVAL_MS);
       }
     }
     if (this.isOver) return;
-    this.#heard_ms = performance.now();
+    this.#lastAnswer_ms = performance.now();
     this.send();
   }
 
   /** @param {string} action @param {Record<string, unknown>} [fields] @param {RequestInit} [options] */
   #post(action, fields = {}, options = {}) {
-    return post({ do: action, page: TAB_ID, connection: this.#connectionNumber, seen: this.#lastNewsNumber, stops: this.#newestPress, ...fields }, options);
+    return post({ do: action, page: TAB_ID, connection: this.#connectionNumber, seen: this.#lastNewsNumber, stops: this.#newestPressNumber, ...fields }, options);
   }
 
   /** One that was made before a stop, or before this page knew of it, is void. @param {Record<string, unknown>} request @returns {Promise<Answer>} */
@@ -162,7 +162,7 @@ export class HostRobot extends RequestQueue {
   /** Stops the robot; that waits for nothing. */
   stop() {
     if (this.isOver) return;
-    this.#newestPress = ++pressCount;
+    this.#newestPressNumber = ++pressCount;
     this.#post('stop', {}, { keepalive: true }).catch(() => {}); // each beat says so, too
   }
 
@@ -175,43 +175,43 @@ export class HostRobot extends RequestQueue {
 
   async send() {
     if (this.isOver || this.#isAsking || !this.#isConnected) return;
-    clearTimeout(this.timer);
-    const early_ms = this.#beatBegan_ms + LEAST_BEAT_MS - performance.now();
+    clearTimeout(this.sendTimer);
+    const early_ms = this.#lastBeat_ms + LEAST_BEAT_INTERVAL_MS - performance.now();
     if (early_ms > 0) {
-      this.timer = window.setTimeout(() => this.send(), early_ms);
+      this.sendTimer = window.setTimeout(() => this.send(), early_ms);
       return;
     }
     this.#isAsking = true;
-    this.#beatBegan_ms = performance.now();
+    this.#lastBeat_ms = performance.now();
     const requests = this.requests.splice(0, 8);
     let isLost = false;
     try {
       const answer = await this.#post('beat', { asked: requests });
-      this.#heard_ms = performance.now();
+      this.#lastAnswer_ms = performance.now();
       for (const news of answer.news) {
-        this.takeNews(news);
+        this.handleNews(news);
         await undefined; // who has asked hears its answer before what comes next
       }
     } catch (error) {
       if (error instanceof ConnectionFailure) this.end(error);
       else {
         isLost = true;
-        this.requests.unshift(...this.withoutKeys(requests)); // it has not arrived, or has: an id is answered once
-        if (performance.now() - this.#heard_ms > SILENCE_LIMIT_MS) this.end(new ConnectionFailure('host_gone'));
+        this.requests.unshift(...this.dropKeyRequests(requests)); // it has not arrived, or has: an id is answered once
+        if (performance.now() - this.#lastAnswer_ms > SILENCE_LIMIT_MS) this.end(new ConnectionFailure('host_gone'));
       }
     } finally {
       this.#isAsking = false;
     }
-    if (!this.isOver) this.timer = window.setTimeout(() => this.send(), this.requests.length && !isLost ? 0 : BEAT_MS);
+    if (!this.isOver) this.sendTimer = window.setTimeout(() => this.send(), this.requests.length && !isLost ? 0 : BEAT_INTERVAL_MS);
   }
 
   /** @param {any} news */
-  takeNews(news) {
+  handleNews(news) {
     if (this.isOver || (news.number && news.number <= this.#lastNewsNumber)) return;
     this.#lastNewsNumber = Math.max(this.#lastNewsNumber, news.number ?? 0);
     if (news.over) this.end(new ConnectionFailure(news.over, news.said));
     else if (news.connected) this.#resolveConnect(news.connected);
-    else super.takeNews(news);
+    else super.handleNews(news);
   }
 
   /** @param {ConnectionFailure} failure */

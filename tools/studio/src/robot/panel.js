@@ -1,11 +1,11 @@
 // The part of the page with a real robot: how it is reached, what it is told, and what it says.
 // Everything that a robot says is put there as text, never as markup.
 
-import { sayOfPlace } from '../blocks/said.js';
+import { sentenceAtPlace } from '../blocks/said.js';
 import { element } from '../page/elements.js';
 import { onEscapeKey } from '../page/escape.js';
 import { faultSentence } from '../page/faults.js';
-import { bytesOf, onFileChosen } from '../page/files.js';
+import { readBytes, onFileChosen } from '../page/files.js';
 import { chooseDevice, BluetoothPort, hasBluetooth } from './bluetooth.js';
 import { Debugging } from './debugging.js';
 import { ActivityLine } from './doing.js';
@@ -23,16 +23,16 @@ import { SensorWatch } from './watching.js';
 import { storeText, loadText } from '../page/kept.js';
 import { makeSymbolPicture, replaceOptions, makePictureOption } from '../page/pictures.js';
 import { pageState } from '../page/page_state.js';
-import { needStop } from '../page/stop_place.js';
+import { setStopNeeded } from '../page/stop_place.js';
 import { labelOf, currentLanguage, text } from '../page/texts.js';
 import { isRobot, LINK, robotOf } from '../page/words.js';
 import { messageWithFix } from '../writing/messages.js';
-import { shownName, showAt } from '../writing/shows.js';
+import { shownName, findShow } from '../writing/shows.js';
 
 /** @typedef {import('../python.js').CheckResult} CheckResult */
 /** @import { RobotInfo, Answer, RobotEvent, Transport } from './transport.js' */
 /** @typedef {RobotEvent & {number: number, nth?: number, robot?: string}} GroupRobotEvent of the group's robot: the number among all news, and that of a value in its run */
-/** @typedef {{label: string, symbolId: string, connect: () => Promise<void>, serial?: any}} ConnectionChoice */
+/** @typedef {{label: string, symbolId: string, connect: () => Promise<void>, serialPort?: any}} ConnectionChoice */
 
 /**
  * @typedef {object} Page what the panel uses of the page
@@ -75,7 +75,7 @@ export class RobotPanel {
   #sensorWatch;
   /** @type {Flashing} */
   #flashing;
-  #onLeft = () => {};
+  #resolveDisconnection = () => {};
   #lineChecksum = ''; // the checksum of the newest line
   #isWitness = false; // of a run on the robot of the group, which another page drives
   #valueCount = 0; // of that run, until now
@@ -92,17 +92,17 @@ export class RobotPanel {
       },
       uploadPaused: () => this.#upload(true, true),
       say: (key) => this.#speech.say(key),
-      sayAnew: (sentence, name) => this.#speech.sayAnew(sentence, name),
+      sayAnew: (makeSentence, name) => this.#speech.sayAnew(makeSentence, name),
       place: page.place,
       recorder: page.recorder,
-      canGetHalting: () => this.#flashing.canHalt(),
-      getHalting: () => this.#getHalting(),
+      canGetHaltingFirmware: () => this.#flashing.canOfferHaltingFirmware(),
+      getHaltingFirmware: () => this.#getHaltingFirmware(),
     });
     this.#sensorWatch = new SensorWatch({
       python: page.python,
       ask: (request, isQuiet) => this.#askNow(request, () => {}, isQuiet),
       say: (key) => this.#speech.say(key),
-      tell: (isOn) => this.#activityLine.showWatching(isOn),
+      onWatchingChange: (isOn) => this.#activityLine.showWatching(isOn),
     });
     for (const [id, onClick] of /** @type {[string, () => void][]} */ ([
       ['link_look', () => this.#listChoices()],
@@ -127,13 +127,13 @@ export class RobotPanel {
     onFileChosen('keys_file', (file) => this.#importKeys(file));
     this.#flashing = new Flashing({
       speech: this.#speech,
-      port: () => this.#choices[this.#portSelect.selectedIndex]?.serial,
+      getChosenPort: () => this.#choices[this.#portSelect.selectedIndex]?.serialPort,
       isFree: () => this.isFree,
       setBusy: (isBusy) => {
         this.#isBusy = isBusy;
         this.#show();
       },
-      meet: (port) => this.#connectBySerial(Promise.resolve(port)),
+      connect: (port) => this.#connectBySerial(Promise.resolve(port)),
     });
     element('stop', HTMLButtonElement).addEventListener('click', () => this.stop());
     onEscapeKey(() => this.stop());
@@ -206,7 +206,7 @@ export class RobotPanel {
       }
     }
     for (const [portIndex, port] of (await listKnownPorts()).entries()) {
-      choices.push({ label: text('serial_known', { number: portIndex + 1 }), symbolId: 'drawn_plug', connect: () => this.#connectBySerial(Promise.resolve(port)), serial: port });
+      choices.push({ label: text('serial_known', { number: portIndex + 1 }), symbolId: 'drawn_plug', connect: () => this.#connectBySerial(Promise.resolve(port)), serialPort: port });
     }
     this.#choices = choices;
     replaceOptions(this.#portSelect, choices.map(({ label, symbolId }) => makePictureOption(label, label, makeSymbolPicture(symbolId))));
@@ -222,7 +222,7 @@ export class RobotPanel {
   connectByHost(portId = 'turn') {
     return this.#connect(async (listener) => {
       const transport = new HostRobot(listener);
-      return { transport, connected: transport.connect(portId, pageState.robotName.value, currentLanguage()) };
+      return { transport, connecting: transport.connect(portId, pageState.robotName.value, currentLanguage()) };
     });
   }
 
@@ -242,12 +242,12 @@ export class RobotPanel {
 
   /** @param {import('./direct.js').Port} port @param {import('./transport.js').RobotListener} listener */
   #openDirect(port, listener) {
-    const keyStore = { load: () => loadText(KEYS_STORAGE_KEY), keep: (/** @type {string} */ keys) => storeText(KEYS_STORAGE_KEY, keys) };
+    const keyStore = { load: () => loadText(KEYS_STORAGE_KEY), store: (/** @type {string} */ keys) => storeText(KEYS_STORAGE_KEY, keys) };
     const transport = new DirectRobot(this.#page.python, port, listener, keyStore);
-    return { transport, connected: transport.connect(pageState.robotName.value, currentLanguage()) };
+    return { transport, connecting: transport.connect(pageState.robotName.value, currentLanguage()) };
   }
 
-  /** @param {(listener: import('./transport.js').RobotListener) => Promise<{transport: Transport, connected: Promise<RobotInfo>}>} openTransport */
+  /** @param {(listener: import('./transport.js').RobotListener) => Promise<{transport: Transport, connecting: Promise<RobotInfo>}>} openTransport */
   async #connect(openTransport) {
     if (this.#isBusy || this.#transport) return;
     this.#isBusy = true;
@@ -267,7 +267,7 @@ export class RobotPanel {
       const connection = await openTransport(listener);
       transport = this.#transport = connection.transport; // STOP reaches it from now on
       this.#show();
-      const robotInfo = await connection.connected;
+      const robotInfo = await connection.connecting;
       this.#robotInfo = robotInfo;
       this.#onConnected(robotInfo);
     } catch (error) {
@@ -282,16 +282,16 @@ export class RobotPanel {
   /** @param {RobotInfo} robotInfo */
   #onConnected(robotInfo) {
     this.#speech.clear();
-    this.#debugging.meet(robotInfo);
-    this.#activityLine.meet(robotInfo);
+    this.#debugging.onRobotChange(robotInfo);
+    this.#activityLine.onRobotChange(robotInfo);
     const isOtherRobot = robotInfo.robot !== null && robotInfo.robot !== pageState.robotName.value;
     if (robotInfo.robot !== null && isOtherRobot) pageState.robotName.set(robotInfo.robot);
     if (robotInfo.owner === 'other') this.#speech.say('say_owned', { name: this.#robotName });
     else if (isOtherRobot) this.#speech.say('say_other_kit', { name: this.#robotName, robot: String(robotInfo.robot) });
     else this.#speech.say('say_connected', { name: this.#robotName });
     element('link_rename_to', HTMLInputElement).value = asPlainText(robotInfo.name);
-    this.#sensorWatch.meet(robotInfo);
-    this.#page.recorder.meet(robotInfo);
+    this.#sensorWatch.onRobotChange(robotInfo);
+    this.#page.recorder.onRobotChange(robotInfo);
     this.#transport?.ask({ do: 'trim' }).then(({ trim }) => trim && showTrim(trim)).catch(() => {});
   }
 
@@ -303,13 +303,13 @@ export class RobotPanel {
     this.#runningProgram = undefined;
     this.#page.recorder.end('LOST');
     this.#page.place.end();
-    this.#debugging.meet(null);
-    this.#activityLine.meet(null);
-    this.#sensorWatch.meet(null);
+    this.#debugging.onRobotChange(null);
+    this.#activityLine.onRobotChange(null);
+    this.#sensorWatch.onRobotChange(null);
     const stopSentence = this.#stopNotice.end();
     this.#speech.sayFailure(failure, stopSentence);
     this.#show();
-    this.#onLeft();
+    this.#resolveDisconnection();
   }
 
   // -- what the robot is told ---------------------------------------------------------------------
@@ -337,7 +337,7 @@ export class RobotPanel {
    */
   async #askNow(request, onDone, isQuiet) {
     if (!this.#transport || !this.#robotInfo) return null;
-    if (request['do'] === 'live') this.#debugging.onLine();
+    if (request['do'] === 'live') this.#debugging.onLineSent();
     const isUnannounced = isQuiet || request['do'] === 'upload' || request['do'] === 'claim'; // what it waits for
     const noticeTimer = isUnannounced ? 0 : setTimeout(() => this.#speech.say('say_waits'), ANSWER_NOTICE_MS);
     try {
@@ -381,17 +381,17 @@ export class RobotPanel {
     this.#remoteWords = remoteWords;
     const robotInfo = this.#robotInfo;
     this.#page.pad.offerRobot('link', robotInfo && remoteWords.length ? {
-      reads: remoteWords,
-      isDeaf: !robotInfo.has_remote,
-      tell: (controls) => this.#sendHeldKeys(controls),
+      remoteWords,
+      lacksRemote: !robotInfo.has_remote,
+      sendControls: (controls) => this.#sendControls(controls),
     } : null);
   }
 
   /** @param {import('../remote/held.js').HeldControls} controls */
-  async #sendHeldKeys(controls) {
+  async #sendControls(controls) {
     const answer = await this.#transport?.press(controls).catch(() => null); // it is over, and that was said
     if (!answer?.said) return; // it has heard it, or the next word
-    this.#page.pad.letGo(); // it is not asked again and again
+    this.#page.pad.releaseAll(); // it is not asked again and again
     this.#speech.sayFailure(new ConnectionFailure(answer.failure ?? 'bug', refusalText(answer)));
   }
 
@@ -432,18 +432,18 @@ export class RobotPanel {
   }
 
   /** Its firmware is to be one with breakpoints: the port has to be free. */
-  async #getHalting() {
-    const disconnection = new Promise((resolve) => { this.#onLeft = () => resolve(null); });
+  async #getHaltingFirmware() {
+    const disconnection = new Promise((resolve) => { this.#resolveDisconnection = () => resolve(null); });
     this.#transport?.leave();
     if (this.#transport) await disconnection;
-    await this.#flashing.offerHalting();
+    await this.#flashing.offerHaltingFirmware();
     this.#speech.say('say_halting_firmware');
   }
 
   #claim() {
     this.#speech.say('say_claiming');
-    const isHost = this.#transport instanceof HostRobot;
-    this.#ask({ do: 'claim' }, () => this.#speech.say(isHost ? 'say_claimed_here' : 'say_claimed'));
+    const isHostRobot = this.#transport instanceof HostRobot;
+    this.#ask({ do: 'claim' }, () => this.#speech.say(isHostRobot ? 'say_claimed_here' : 'say_claimed'));
   }
 
   /** @param {File} file with keys */
@@ -453,12 +453,12 @@ export class RobotPanel {
       return;
     }
     try {
-      const data = await bytesOf(file);
-      let keptText, importResult;
+      const data = await readBytes(file);
+      let storedKeys, importResult;
       do {
-        keptText = loadText(KEYS_STORAGE_KEY);
-        importResult = await this.#page.python.ask({ do: 'import_keys', kept: keptText }, data);
-      } while (loadText(KEYS_STORAGE_KEY) !== keptText); // another tab has stored keys meanwhile, or the robot's session
+        storedKeys = loadText(KEYS_STORAGE_KEY);
+        importResult = await this.#page.python.ask({ do: 'import_keys', kept: storedKeys }, data);
+      } while (loadText(KEYS_STORAGE_KEY) !== storedKeys); // another tab has stored keys meanwhile, or the robot's session
       if (importResult.count) storeText(KEYS_STORAGE_KEY, importResult.keys);
       this.#speech.say(importResult.count ? 'say_keys' : 'say_no_keys', { count: importResult.count });
     } catch {
@@ -493,7 +493,7 @@ export class RobotPanel {
     } else if (event.event === 'STOPPING') this.#stopNotice.begin();
     else if (event.event === 'RESTARTED') this.#speech.say('why_restarted');
     else if (event.event === 'STOPPED') {
-      this.#page.pad.letGo();
+      this.#page.pad.releaseAll();
       // A page that is hidden keeps the words why it stopped the robot.
       if (this.#stopNotice.isOpen || document.visibilityState !== 'hidden') this.#stopNotice.confirm(String(event.cause));
     }
@@ -567,7 +567,7 @@ export class RobotPanel {
   #shownValueName({ program: checksum, at: offset }) {
     if (!checksum) return '';
     if (this.#runningProgram?.program !== checksum) this.#runningProgram = this.#programOf(checksum);
-    const show = this.#runningProgram && showAt(this.#runningProgram, offset);
+    const show = this.#runningProgram && findShow(this.#runningProgram, offset);
     return show ? shownName(this.#runningProgram?.shows ?? [], show, show[1], false) : '';
   }
 
@@ -586,7 +586,7 @@ export class RobotPanel {
       return;
     }
     const [, line, column, end_line, end_column] = place;
-    this.#speech.saySentence(sayOfPlace('say_fault', 'say_fault_block', program?.text ?? '', { line, column }, { what: sentence }));
+    this.#speech.saySentence(sentenceAtPlace('say_fault', 'say_fault_block', program?.text ?? '', { line, column }, { what: sentence }));
     if (movesCaret && pageState.checkResult.value === program) this.#page.goTo({ line, column, end_line, end_column });
   }
 
@@ -596,7 +596,7 @@ export class RobotPanel {
     element('link_drive', HTMLElement).hidden = !isConnected && !this.#isWitness;
     element('link_drive', HTMLElement).classList.toggle('witness', !isConnected);
     element('link_connected', HTMLElement).hidden = this.#transport === null;
-    needStop('link', this.#transport !== null);
+    setStopNeeded('link', this.#transport !== null);
     element('link_name', HTMLElement).textContent = this.#robotName;
     element('link_serial', HTMLButtonElement).hidden = !hasSerial;
     element('link_bluetooth', HTMLButtonElement).hidden = !hasBluetooth;

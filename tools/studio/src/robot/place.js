@@ -10,7 +10,7 @@ const END_EVENTS = ['STARTED', 'DONE', 'FAULT', 'STOPPED', 'RESTARTED', 'LOST', 
 export class RunningPlace {
   /** What the robot has told last. @type {RobotEvent | null} */
   #lastEvent = null;
-  #isHeld = false;
+  #isHalted = false;
 
   constructor() {
     pageState.checkResult.subscribe(() => {
@@ -21,24 +21,24 @@ export class RunningPlace {
   /** @param {RobotEvent} event */
   onEvent(event) {
     if (END_EVENTS.includes(event.event)) this.end();
-    else if (event.event === 'PLACE' && !this.#isHeld) this.#setEvent(event);
+    else if (event.event === 'PLACE' && !this.#isHalted) this.#setEvent(event);
   }
 
   /** It is halted there. @param {number} offset @param {string} checksum */
-  hold(offset, checksum) {
-    this.#isHeld = true;
+  halt(offset, checksum) {
+    this.#isHalted = true;
     this.#setEvent({ event: 'HALTED', at: offset, program: checksum });
   }
 
   /** It goes on from there. */
-  goOn() {
-    this.#isHeld = false;
+  resume() {
+    this.#isHalted = false;
     this.#show();
   }
 
   /** Nobody tells any more. */
   end() {
-    this.#isHeld = false;
+    this.#isHalted = false;
     this.#setEvent(null);
   }
 
@@ -53,6 +53,6 @@ export class RunningPlace {
     const program = pageState.checkResult.value;
     const offset = Number(this.#lastEvent?.at ?? -1);
     const isOfPage = program?.image && program.program === this.#lastEvent?.program && offset >= 0 && offset < program.bytes;
-    pageState.robotRun.set({ range: isOfPage ? rangeAt(program.places, offset) : null, isHeld: this.#isHeld });
+    pageState.robotRun.set({ range: isOfPage ? rangeAt(program.places, offset) : null, isHeld: this.#isHalted });
   }
 }

@@ -39,7 +39,7 @@ export class Recorder {
   }
 
   /** A robot is connected. @param {RobotInfo} robotInfo */
-  meet(robotInfo) {
+  onRobotChange(robotInfo) {
     this.#lacksReadings = !robotInfo.has_readings;
   }
 
@@ -61,20 +61,20 @@ export class Recorder {
   }
 
   /** It goes on. */
-  goOn() {
+  resume() {
     if (this.#began_ms !== null && this.#halted_ms !== null) this.#began_ms += performance.now() - this.#halted_ms;
     this.#halted_ms = null;
   }
 
   /** The recording is over, if there is one. @param {string} event the last one */
   end(event) {
-    this.goOn();
+    this.resume();
     if (this.#isOver) return;
     const duration_ms = Math.min(this.#elapsed_ms, MOST_MS);
     this.#run?.addRow([duration_ms, event]);
     if (this.#run) this.#run.end_ms = duration_ms;
     this.#isOver = true;
-    this.#page.runs.trim();
+    this.#page.runs.forgetOldest();
     this.#show();
   }
 
@@ -86,12 +86,12 @@ export class Recorder {
       else this.end('STOPPED');
     }
     if (event.event === 'READING') this.#addReadings(event.rows ?? []);
-    const row = { SHOW: `SHOW ${event.value}`, DONE: 'DONE', FAULT: `FAULT ${event.fault}`, STOPPED: 'STOPPED', RESTARTED: 'LOST', LOST: 'LOST', OVER: 'LOST', MISSED: 'MISSED' }[event.event];
-    if (!row || this.#isOver || !this.#run) return;
+    const rowText = { SHOW: `SHOW ${event.value}`, DONE: 'DONE', FAULT: `FAULT ${event.fault}`, STOPPED: 'STOPPED', RESTARTED: 'LOST', LOST: 'LOST', OVER: 'LOST', MISSED: 'MISSED' }[event.event];
+    if (!rowText || this.#isOver || !this.#run) return;
     this.#began_ms = Math.min(this.#began_ms ?? Infinity, performance.now() - (event.ms ?? 0));
-    if (event.event !== 'SHOW') this.end(row);
+    if (event.event !== 'SHOW') this.end(rowText);
     else if (this.#run.rows.length >= MOST_EVENTS || this.#elapsed_ms > MOST_MS) this.end('STOPPED');
-    else this.#run.addRow([event.ms ?? this.#elapsed_ms, row]);
+    else this.#run.addRow([event.ms ?? this.#elapsed_ms, rowText]);
     this.#show();
   }
 
@@ -122,7 +122,7 @@ export class Recorder {
     if (sentProgram) {
       const { checkResult, text, robot: robotName } = sentProgram;
       const run = this.#run = new Run({ of: 'real', text, robot: robotName, program: checksum, is_by_button: began_ms === null }, checkResult, null);
-      run.clock = () => Math.min(MOST_MS, run === this.#run ? this.#elapsed_ms : run.rows.at(-1)?.[0] ?? 0);
+      run.readClock = () => Math.min(MOST_MS, run === this.#run ? this.#elapsed_ms : run.rows.at(-1)?.[0] ?? 0);
       this.#page.runs.addRun(run);
     }
     this.#show();

@@ -30,7 +30,7 @@ export async function choosePort() {
 }
 
 export class SerialPort {
-  goneBy = 'port_gone';
+  lossReason = 'port_gone';
   #port;
   #baud;
   /** @type {any} */
@@ -52,8 +52,8 @@ export class SerialPort {
     return this.#port.getInfo().bluetoothServiceClassId !== undefined;
   }
 
-  /** @param {(data: Uint8Array) => void} onData @param {() => void} onGone */
-  async open(onData, onGone) {
+  /** @param {(data: Uint8Array) => void} onData @param {() => void} onDisconnect */
+  async open(onData, onDisconnect) {
     try {
       await this.#port.open({ baudRate: this.#baud, bufferSize: 4096 });
     } catch (error) {
@@ -62,7 +62,7 @@ export class SerialPort {
     }
     this.#writer = this.#port.writable.getWriter();
     this.#readLoop = this.#readUntilClosed(onData).then(() => {
-      if (!this.#isClosing) onGone();
+      if (!this.#isClosing) onDisconnect();
     });
   }
 

@@ -12,7 +12,7 @@ const MOST_SENTENCE_CHARACTERS = 1000;
 
 export class Speech {
   /** What is said, so that it can be said in another language or view. @type {() => string} */
-  #sentence = () => '';
+  #makeSentence = () => '';
   #sentenceName = ''; // of it
   isHeldByStop = false; // by a stop, which alone says what becomes of it
   /** @type {string[]} */
@@ -25,41 +25,41 @@ export class Speech {
   }
 
   #showSentence() {
-    this.#sentenceElement.textContent = this.#sentence();
+    this.#sentenceElement.textContent = this.#makeSentence();
   }
 
-  /** @param {ConnectionFailure} failure @param {() => string} [addition] that is said with it */
-  sayFailure(failure, addition = () => '') {
+  /** @param {ConnectionFailure} failure @param {() => string} [makeAddition] that is said with it */
+  sayFailure(failure, makeAddition = () => '') {
     const key = `why_${failure.reason}`;
     const sentence = asPlainText(failure.details, MOST_SENTENCE_CHARACTERS);
     const isKnown = hasText(key) && (!sentence || failure.reason.startsWith('link_'));
-    this.sayAnew(() => `${isKnown ? text(key) : sentence || text('why_bug')} ${addition()}`.trim(), failure.reason);
+    this.sayAnew(() => `${isKnown ? text(key) : sentence || text('why_bug')} ${makeAddition()}`.trim(), failure.reason);
   }
 
   /**
    * @param {import('../page/texts.js').Key} key
    * @param {Record<string, string | number>} values
-   * @param {string} [placeKey]
+   * @param {string} [storagePlaceKey]
    */
-  say(key, values = {}, placeKey = '') {
-    this.sayAnew(() => text(key, placeKey ? { ...values, saved: text(textKey(placeKey)) } : values), key);
+  say(key, values = {}, storagePlaceKey = '') {
+    this.sayAnew(() => text(key, storagePlaceKey ? { ...values, saved: text(textKey(storagePlaceKey)) } : values), key);
   }
 
   /** @param {string} sentence */
   saySentence(sentence) {
     if (this.isHeldByStop) return;
     this.#sentenceName = '';
-    this.#sentence = () => sentence;
+    this.#makeSentence = () => sentence;
     this.#showSentence();
   }
 
-  /** Says a sentence that is made anew in another language or view. @param {() => string} sentence @param {string} name for tests */
-  sayAnew(sentence, name) {
+  /** Says a sentence that is made anew in another language or view. @param {() => string} makeSentence @param {string} name for tests */
+  sayAnew(makeSentence, name) {
     if (this.isHeldByStop) return;
     // A robot is lost once, whether a request says so or an event.
-    if (name.endsWith('link_lost') && this.#sentenceName.endsWith('link_lost') && sentence() === this.#sentence()) return;
+    if (name.endsWith('link_lost') && this.#sentenceName.endsWith('link_lost') && makeSentence() === this.#makeSentence()) return;
     this.#sentenceName = name;
-    this.#sentence = sentence;
+    this.#makeSentence = makeSentence;
     this.#showSentence();
     document.documentElement.dataset['link'] = name;
   }

@@ -6,7 +6,7 @@ import { ConnectionFailure } from './transport.js';
 /**
  * The cable. `open` opens it and `reset` restarts the board, whose bootloader then listens for a second.
  * @typedef {object} Cable
- * @property {(onData: (data: Uint8Array) => void, onGone: () => void) => Promise<void>} open rejects with a ConnectionFailure
+ * @property {(onData: (data: Uint8Array) => void, onDisconnect: () => void) => Promise<void>} open rejects with a ConnectionFailure
  * @property {() => Promise<void>} reset
  * @property {(data: Uint8Array) => Promise<void>} write
  * @property {() => Promise<void>} close
@@ -43,7 +43,7 @@ const ANSWER_LIMIT_MS = 1000;
  * @param {(baud: number) => Cable} openCable
  * @param {Bootloader[]} bootloaders
  * @param {Uint8Array} firmware
- * @param {(part: number) => void} onProgress from 0 to 1
+ * @param {(fraction: number) => void} onProgress from 0 to 1
  * @param {AbortSignal} [cancelSignal] somebody wants it no more
  */
 export async function flash(openCable, bootloaders, firmware, onProgress, cancelSignal) {
@@ -51,7 +51,7 @@ export async function flash(openCable, bootloaders, firmware, onProgress, cancel
     const board = new Board(openCable(baud), cancelSignal);
     try {
       await board.open();
-      if (!(await board.findBootloader())) {
+      if (!(await board.detectBootloader())) {
         if (index + 1 < bootloaders.length) continue;
         throw new ConnectionFailure('flash_nobody');
       }
@@ -100,7 +100,7 @@ class Board {
   }
 
   /** Returns whether a bootloader answers; rejects if it is that of another chip. */
-  async findBootloader() {
+  async detectBootloader() {
     for (let tryNumber = 0; tryNumber < SYNC_TRIES; tryNumber += 1) {
       this.#receivedBytes = []; // the start of a sketch, or an answer that came late
       if (!(await this.#ask([SYNC_COMMAND], 0, SYNC_LIMIT_MS))) continue;
@@ -113,7 +113,7 @@ class Board {
     return false;
   }
 
-  /** @param {Uint8Array} firmware @param {(part: number) => void} onProgress */
+  /** @param {Uint8Array} firmware @param {(fraction: number) => void} onProgress */
   async write(firmware, onProgress) {
     this.#isWriting = true;
     const paddedFirmware = new Uint8Array(Math.ceil(firmware.length / PAGE_BYTES) * PAGE_BYTES).fill(0xff);
@@ -176,9 +176,9 @@ class Board {
 
   /** Waits until so many bytes are there. @param {number} count @param {number} limit_ms */
   async #waitForBytes(count, limit_ms) {
-    const end_ms = Date.now() + limit_ms;
+    const deadline_ms = Date.now() + limit_ms;
     while (this.#receivedBytes.length < count && !this.#isGone) {
-      const left_ms = end_ms - Date.now();
+      const left_ms = deadline_ms - Date.now();
       if (left_ms <= 0) break;
       await new Promise((resolve) => {
         const timer = setTimeout(resolve, left_ms);

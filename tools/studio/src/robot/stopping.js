@@ -6,7 +6,7 @@ import { LINK } from '../page/words.js';
 
 export class StopNotice {
   #speech;
-  #timer = 0;
+  #confirmTimer = 0;
   /** @type {'none' | 'under way' | 'unconfirmed' | 'confirmed'} */
   #state = 'none';
   /** What is said once it is confirmed, or nothing for why the robot has stopped. */
@@ -26,7 +26,7 @@ export class StopNotice {
     if (this.#state === 'under way') return;
     this.#speech.say('say_stopping');
     this.#setState('under way');
-    this.#timer = window.setTimeout(() => this.showUnconfirmed(), LINK.confirm_ms);
+    this.#confirmTimer = window.setTimeout(() => this.showUnconfirmed(), LINK.confirm_ms);
   }
 
   /** The robot has confirmed a stop, of this page or of somebody else. @param {string} cause of it */
@@ -60,6 +60,6 @@ export class StopNotice {
   #setState(state) {
     this.#state = state;
     this.#speech.isHeldByStop = state === 'under way';
-    clearTimeout(this.#timer);
+    clearTimeout(this.#confirmTimer);
   }
 }

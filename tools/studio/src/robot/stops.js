@@ -13,27 +13,27 @@ import { LINK } from '../page/words.js';
 const POLL_MS = 200;
 const LATE_MS = 1000; // after which a robot that has not confirmed is red
 const NOTICE_MS = 3000; // after which it is said that nobody has heard it
-const SEEN_MS = 15_000; // for which it is seen that all have confirmed: later it says nothing of what drives now
+const CONFIRMED_SHOWN_MS = 15_000; // for which it is seen that all have confirmed: later it says nothing of what drives now
 
-let newestStop = 0;
+let newestStopNumber = 0;
 
 /** Stops all robots, and reports it until each has confirmed or the time is over. */
 export async function stopAll() {
-  const stopNumber = ++newestStop;
+  const stopNumber = ++newestStopNumber;
   const began_ms = performance.now();
   /** @type {RobotStop[] | null} */
   let robots = null;
-  const noticeTimer = setTimeout(() => stopNumber === newestStop && showStops(null, false), NOTICE_MS);
-  while (stopNumber === newestStop && !robots && performance.now() - began_ms < LINK.confirm_ms) {
+  const noticeTimer = setTimeout(() => stopNumber === newestStopNumber && showStops(null, false), NOTICE_MS);
+  while (stopNumber === newestStopNumber && !robots && performance.now() - began_ms < LINK.confirm_ms) {
     robots = await requestStops('stop_all');
     if (!robots) await pause(POLL_MS);
   }
   clearTimeout(noticeTimer);
-  while (stopNumber === newestStop && robots) {
+  while (stopNumber === newestStopNumber && robots) {
     const elapsed_ms = performance.now() - began_ms;
     const isOver = elapsed_ms > 2 * LINK.confirm_ms || robots.every(({ stop }) => stop !== 'asked');
     showStops(robots, isOver || elapsed_ms > LATE_MS);
-    if (isOver && robots.every(({ stop }) => stop === 'confirmed')) setTimeout(() => stopNumber === newestStop && hideStops(), SEEN_MS);
+    if (isOver && robots.every(({ stop }) => stop === 'confirmed')) setTimeout(() => stopNumber === newestStopNumber && hideStops(), CONFIRMED_SHOWN_MS);
     if (isOver) return;
     await pause(POLL_MS);
     robots = (await requestStops('stops')) ?? robots;

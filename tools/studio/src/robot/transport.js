@@ -60,7 +60,7 @@
  * Who hears of a robot: `onEnd` comes once, when the connection has ended.
  * @typedef {object} RobotListener
  * @property {(event: RobotEvent) => void} onEvent
- * @property {(why: ConnectionFailure) => void} onEnd
+ * @property {(failure: ConnectionFailure) => void} onEnd
  */
 
 /**
@@ -89,8 +89,8 @@ export class RequestQueue {
   isOver = false;
   /** What has not been sent yet. @type {Record<string, unknown>[]} */
   requests = [];
-  timer = 0; // until it sends the next time
-  /** @type {Map<unknown, {resolve: (answer: Answer) => void, reject: (why: Error) => void}>} */
+  sendTimer = 0; // until it sends the next time
+  /** @type {Map<unknown, {resolve: (answer: Answer) => void, reject: (error: Error) => void}>} */
   #pendingRequests = new Map();
   #requestCount = 0;
   #listener;
@@ -120,12 +120,12 @@ export class RequestQueue {
    * @param {import('../remote/held.js').HeldControls} controls
    */
   press(controls) {
-    this.requests = this.withoutKeys(this.requests);
+    this.requests = this.dropKeyRequests(this.requests);
     return this.ask({ do: 'keys', ...controls });
   }
 
   /** What is asked but for keys, whose askers hear that they were not sent. @param {Record<string, unknown>[]} requests */
-  withoutKeys(requests) {
+  dropKeyRequests(requests) {
     return requests.filter((request) => {
       if (request['do'] !== 'keys') return true;
       this.#pendingRequests.get(request['id'])?.resolve({ failure: 'replaced' });
@@ -138,7 +138,7 @@ export class RequestQueue {
   async send() {}
 
   /** @param {any} news an event, or an answer */
-  takeNews(news) {
+  handleNews(news) {
     if (news.event) this.#listener.onEvent(news);
     else {
       this.#pendingRequests.get(news.id)?.resolve(news);
@@ -149,7 +149,7 @@ export class RequestQueue {
   /** The connection has ended. @param {ConnectionFailure} failure */
   end(failure) {
     this.isOver = true;
-    clearTimeout(this.timer);
+    clearTimeout(this.sendTimer);
     for (const pending of this.#pendingRequests.values()) pending.reject(failure);
     this.#pendingRequests.clear();
     this.#listener.onEnd(failure);

@@ -6,13 +6,13 @@
 
 import { element, setHidden } from '../page/elements.js';
 import { storeText, loadText } from '../page/kept.js';
-import { readingText, numberOfShown, percentOfRange } from '../page/readings.js';
+import { readingText, parseShownValue, percentOfRange } from '../page/readings.js';
 import { showRows } from '../page/rows.js';
 import { pageState } from '../page/page_state.js';
 import { currentLanguage } from '../page/texts.js';
 import { devicesOf, deviceName, robotOf } from '../page/words.js';
 import { Plot } from '../virtual/plot.js';
-import { showAt } from '../writing/shows.js';
+import { findShow } from '../writing/shows.js';
 
 /** @typedef {import('../python.js').CheckResult} CheckResult */
 /** @import { RobotInfo, Answer, RobotEvent } from './transport.js' */
@@ -22,14 +22,14 @@ import { showAt } from '../writing/shows.js';
  * @property {import('../python.js').Python} python
  * @property {(request: Record<string, unknown>, isQuiet: boolean) => Promise<Answer | null>} ask null if nothing came of it, which was said unless it is quiet
  * @property {(key: import('../page/texts.js').Key) => void} say
- * @property {(isOn: boolean) => void} tell whether the readings come
+ * @property {(isOn: boolean) => void} onWatchingChange whether the readings come
  */
 
 const STORAGE_KEY = 'tiniscript.watches'; // whether somebody has wanted it
 const SHOW_BITS = 180; // of a value on the line
 const LOAD_DIVISOR = 3; // a third of what the line can carry, at most
 const LEAST_INTERVAL_MS = 200; // between two readings: nobody reads more often
-const PAUSE_MS = 1000; // after a program, before it begins again
+const RESTART_PAUSE_MS = 1000; // after a program, before it begins again
 const EMPTY_LINE = 'W(0)'; // a line that ends at once, in the place of the other one
 /** What the program before reads no more after. */
 const READ_END_EVENTS = ['STARTED', 'DONE', 'STOPPED', 'FAULT', 'RESTARTED', 'LOST'];
@@ -45,17 +45,17 @@ export class SensorWatch {
   #isBusy = false; // something else runs
   #isOn = false;
   /** With which it begins. @type {RobotInfo | null} */
-  #beginningRobot = null;
+  #startingRobot = null;
   #isOwnLine = false; // what runs, or ran last
   #isProgramWaiting = false; // the robot's program, for its button
-  #beginTimer = 0;
+  #startTimer = 0;
   #frameRequest = 0;
   /** The lines of this part of the page, by their checksums. @type {Map<string, CheckResult>} */
-  #lines = new Map();
+  #ownLines = new Map();
   /** By the name of the sensor, as the robot has told them. @type {Map<string, string>} */
   #readings = new Map();
   /** Sensors that the program which runs has read. @type {Set<string>} */
-  #read = new Set();
+  #sensorsRead = new Set();
   #began_ms = 0;
   #plot = new Plot(element('senses_plot', HTMLCanvasElement));
   #watchButton = element('link_watch', HTMLButtonElement);
@@ -71,15 +71,15 @@ export class SensorWatch {
   }
 
   /** A robot is connected, or none any more. @param {RobotInfo | null} robotInfo */
-  meet(robotInfo) {
+  onRobotChange(robotInfo) {
     this.#robotInfo = robotInfo;
     this.#isFree = robotInfo?.is_idle ?? false;
     this.#isBusy = robotInfo?.is_running ?? false;
     this.#isWanted = loadText(STORAGE_KEY) !== '' && robotInfo?.owner !== 'other';
     this.#isProgramWaiting = this.#isOwnLine = false;
     this.#readings.clear();
-    this.#read.clear();
-    this.#plot.begin();
+    this.#sensorsRead.clear();
+    this.#plot.clear();
     this.#began_ms = performance.now();
     this.#stopWatching();
     this.#followSide();
@@ -100,12 +100,12 @@ export class SensorWatch {
 
   /** That was answered. @param {Record<string, unknown>} request */
   resumeAfter(request) {
-    if (INTERRUPTING_REQUESTS.includes(String(request['do']))) this.#beginLater();
+    if (INTERRUPTING_REQUESTS.includes(String(request['do']))) this.#startLater();
   }
 
   /** Somebody has pressed STOP. */
   stop() {
-    if (this.#isOn || this.#isBeginning) this.#isWanted = false;
+    if (this.#isOn || this.#isStarting) this.#isWanted = false;
     this.#isFree = false;
     this.#stopWatching();
   }
@@ -113,8 +113,8 @@ export class SensorWatch {
   /** @param {RobotEvent} event @param {boolean} isTyped it reports a line that somebody has typed @returns {boolean} whether nobody else is to hear of it */
   onEvent({ event, program: checksum = '', value = '', at: offset = -1, cause, rows = [] }, isTyped) {
     if (event === 'READING') this.#applyReadRows(rows);
-    else if (READ_END_EVENTS.includes(event)) this.#read.clear();
-    const isOwn = this.#lines.has(checksum);
+    else if (READ_END_EVENTS.includes(event)) this.#sensorsRead.clear();
+    const isOwn = this.#ownLines.has(checksum);
     if (event === 'STARTED') this.#isOwnLine = isOwn;
     if (event === 'SHOW') {
       if (isOwn) this.#applyReading(checksum, offset, value);
@@ -133,7 +133,7 @@ export class SensorWatch {
       this.#stopWatching();
       if (wasOwn) return true;
       this.#isFree = true;
-      this.#beginLater();
+      this.#startLater();
     } else if (['STOPPED', 'FAULT', 'RESTARTED', 'LOST'].includes(event)) {
       if (this.#isOn && cause === 'BUTTON') queueMicrotask(() => this.#page.say('say_watch_button')); // after what is said of the stop
       if (this.#isOn) this.#isWanted = false;
@@ -146,7 +146,7 @@ export class SensorWatch {
   // -- its line -----------------------------------------------------------------------------------
 
   #toggle() {
-    const wasOn = this.#isOn || this.#isBeginning;
+    const wasOn = this.#isOn || this.#isStarting;
     this.#isWanted = !wasOn;
     storeText(STORAGE_KEY, wasOn ? '' : 'on');
     if (wasOn) this.#giveWay();
@@ -165,35 +165,35 @@ export class SensorWatch {
     else if (this.#isOn) this.#giveWay();
   }
 
-  #beginLater() {
-    clearTimeout(this.#beginTimer);
-    this.#beginTimer = window.setTimeout(() => this.#startWatching(), PAUSE_MS);
+  #startLater() {
+    clearTimeout(this.#startTimer);
+    this.#startTimer = window.setTimeout(() => this.#startWatching(), RESTART_PAUSE_MS);
   }
 
-  get #isBeginning() {
-    return this.#robotInfo !== null && this.#beginningRobot === this.#robotInfo;
+  get #isStarting() {
+    return this.#robotInfo !== null && this.#startingRobot === this.#robotInfo;
   }
 
-  get #canBegin() {
+  get #canStart() {
     return this.#robotInfo !== null && this.#isWanted && this.#isFree && !this.#isProgramWaiting && pageState.sideId.value === 'side_real';
   }
 
   async #startWatching(isQuiet = true) {
     const robotInfo = this.#robotInfo;
-    if (!this.#canBegin || this.#isOn || this.#isBeginning) return;
-    this.#beginningRobot = robotInfo;
+    if (!this.#canStart || this.#isOn || this.#isStarting) return;
+    this.#startingRobot = robotInfo;
     try {
       const line = await this.#checkLine(this.#lineText);
-      if (!line.image || !this.#canBegin || robotInfo !== this.#robotInfo) return;
+      if (!line.image || !this.#canStart || robotInfo !== this.#robotInfo) return;
       const answer = await this.#page.ask({ do: 'live', image: line.image, robot: this.#robotName }, isQuiet);
       if (robotInfo !== this.#robotInfo) return;
       if (answer) this.#isOwnLine = true;
       else this.#isWanted = false; // it is not asked again and again
-      this.#isOn = answer !== null && this.#canBegin;
-      if (this.#isOn) this.#page.tell(true);
+      this.#isOn = answer !== null && this.#canStart;
+      if (this.#isOn) this.#page.onWatchingChange(true);
       else if (answer && this.#isFree) await this.#giveWay(); // nobody wants it any more
     } finally {
-      if (this.#beginningRobot === robotInfo) this.#beginningRobot = null;
+      if (this.#startingRobot === robotInfo) this.#startingRobot = null;
       this.#show();
     }
   }
@@ -206,8 +206,8 @@ export class SensorWatch {
   }
 
   #stopWatching() {
-    clearTimeout(this.#beginTimer);
-    if (this.#isOn) this.#page.tell(false);
+    clearTimeout(this.#startTimer);
+    if (this.#isOn) this.#page.onWatchingChange(false);
     this.#isOn = false;
     this.#show();
   }
@@ -229,7 +229,7 @@ export class SensorWatch {
   /** @param {string} line @returns {Promise<CheckResult>} */
   async #checkLine(line) {
     const checkResult = await this.#page.python.ask({ do: 'check', robot: this.#robotName, language: currentLanguage() }, new TextEncoder().encode(`SI|${line}`));
-    this.#lines.set(checkResult.program, checkResult);
+    this.#ownLines.set(checkResult.program, checkResult);
     return checkResult;
   }
 
@@ -237,8 +237,8 @@ export class SensorWatch {
 
   /** @param {string} checksum @param {number} offset @param {string} value */
   #applyReading(checksum, offset, value) {
-    const line = this.#lines.get(checksum);
-    const show = line && showAt(line, offset);
+    const line = this.#ownLines.get(checksum);
+    const show = line && findShow(line, offset);
     if (!show) return;
     this.#readings.set(show[1], value);
     this.#drawReadings();
@@ -247,23 +247,23 @@ export class SensorWatch {
   /** @param {[number, string][]} rows what a program has read, for who has watched the sensors before */
   #applyReadRows(rows) {
     if (!this.#readings.size) return;
-    for (const [, what] of rows) {
-      const [kind, name = '', value = ''] = what.split(' ');
+    for (const [, rowText] of rows) {
+      const [kind, name = '', value = ''] = rowText.split(' ');
       if (kind !== 'READ') continue;
-      this.#read.add(name);
+      this.#sensorsRead.add(name);
       this.#readings.set(name, value);
     }
-    if (this.#read.size) this.#drawReadings();
+    if (this.#sensorsRead.size) this.#drawReadings();
   }
 
   #drawReadings() {
-    this.#plot.add(performance.now() - this.#began_ms, this.#sensors.map((device) => ({ name: deviceName(device), value: numberOfShown(this.#valueOf(device.text)) })));
+    this.#plot.add(performance.now() - this.#began_ms, this.#sensors.map((device) => ({ name: deviceName(device), value: parseShownValue(this.#valueOf(device.text)) })));
     this.#frameRequest ||= requestAnimationFrame(() => this.#show());
   }
 
   /** What is known now: of a program that runs, what it reads. @param {string} name */
   #valueOf(name) {
-    return !this.#read.size || this.#read.has(name) ? this.#readings.get(name) : undefined;
+    return !this.#sensorsRead.size || this.#sensorsRead.has(name) ? this.#readings.get(name) : undefined;
   }
 
   #show() {
@@ -273,12 +273,12 @@ export class SensorWatch {
     const container = element('senses', HTMLElement);
     setHidden(this.#watchButton, !this.#sensors.length);
     setHidden(container, !this.#readings.size);
-    this.#watchButton.setAttribute('aria-pressed', String(this.#isOn || this.#isBeginning));
-    container.classList.toggle('past', !this.#isOn && !this.#read.size);
+    this.#watchButton.setAttribute('aria-pressed', String(this.#isOn || this.#isStarting));
+    container.classList.toggle('past', !this.#isOn && !this.#sensorsRead.size);
     if (container.hidden) return;
     showRows(element('gauges', HTMLElement), this.#sensors.map((device) => {
       const reading = this.#valueOf(device.text) ?? '';
-      return [deviceName(device), reading && readingText(device, reading), percentOfRange(device, numberOfShown(reading))];
+      return [deviceName(device), reading && readingText(device, reading), percentOfRange(device, parseShownValue(reading))];
     }));
     this.#plot.draw();
   }

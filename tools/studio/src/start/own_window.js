@@ -6,7 +6,7 @@ import { storeOwnRobot, COLOURS, MOST_NAME_CHARACTERS } from '../page/own_robot.
 import { pageState } from '../page/page_state.js';
 import { text } from '../page/texts.js';
 
-export class OwnWindow {
+export class OwnRobotWindow {
   #nameInput = makeElement('input');
   #colourGroup = makeElement('div');
   #dialog = makeElement('dialog');

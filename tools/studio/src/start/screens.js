@@ -21,7 +21,7 @@ function setScreen(screen) {
 }
 
 /** @returns {boolean} */
-export function isStart() {
+export function isStartShown() {
   return pageState.screen.value === 'start';
 }
 
@@ -40,11 +40,11 @@ export function showProgramInstead() {
 
 /**
  * Begins with what the address says.
- * @param {boolean} isProgram the program is to be seen, whatever it says
+ * @param {boolean} isProgramWanted the program is to be seen, whatever it says
  * @param {boolean} hasStart a class has none
  */
-export function openFirstScreen(isProgram, hasStart) {
-  setScreen(isProgram || !hasStart || location.hash === EDITOR_HASH ? 'program' : 'start');
+export function openFirstScreen(isProgramWanted, hasStart) {
+  setScreen(isProgramWanted || !hasStart || location.hash === EDITOR_HASH ? 'program' : 'start');
   addEventListener('popstate', () => {
     if (hasStart && isScreenAddress()) setScreen(location.hash === EDITOR_HASH ? 'program' : 'start');
   });

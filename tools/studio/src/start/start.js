@@ -7,14 +7,14 @@ import { pageState } from '../page/page_state.js';
 import { currentLanguage, textKey, text } from '../page/texts.js';
 import { versionTitle, loadVersions } from '../programs/versions.js';
 import { BEGINNINGS } from './beginnings.js';
-import { isStart, showScreen } from './screens.js';
+import { isStartShown, showScreen } from './screens.js';
 import { makeThumbnail } from './thumbnail.js';
 
 /**
  * @typedef {object} Page what the start needs of the page
  * @property {(program: {text: string, robot: string, name: string}) => void} putProgram another program into the editor
  * @property {(world: string) => Promise<void>} runInWorld the program in a world
- * @property {() => void} seeProgram the program, which is seen from now on
+ * @property {() => void} onProgramShown the program is seen from now on
  * @property {(button: string) => void} showSide shows what its button does
  * @property {() => void} leaveProgram the program
  */
@@ -43,13 +43,13 @@ export class Start {
     }
     pageState.screen.subscribe((screen) => {
       if (screen === 'start') this.#page.leaveProgram();
-      else if (!this.#isBeginning) this.#page.seeProgram();
+      else if (!this.#isBeginning) this.#page.onProgramShown();
       this.#showPrograms();
       element(screen === 'start' ? 'start' : 'home', HTMLElement).focus({ preventScroll: true });
     });
     for (const observable of [pageState.language, pageState.view]) observable.subscribe(() => this.#showPrograms());
-    if (isStart()) this.#showPrograms();
-    else page.seeProgram();
+    if (isStartShown()) this.#showPrograms();
+    else page.onProgramShown();
   }
 
   /** @param {string} name */
@@ -63,7 +63,7 @@ export class Start {
       await this.#page.runInWorld(worldName);
     } finally {
       this.#isBeginning = false;
-      this.#page.seeProgram();
+      this.#page.onProgramShown();
     }
   }
 
@@ -79,7 +79,7 @@ export class Start {
 
   /** Shows the earlier programs as they are now, in the page's language. */
   #showPrograms() {
-    if (!isStart()) return;
+    if (!isStartShown()) return;
     this.#showProgress();
     const timeFormat = new Intl.DateTimeFormat(currentLanguage(), { dateStyle: 'short', timeStyle: 'short' });
     const rows = loadVersions().map((version, index, versions) => /** @type {const} */ ([version, versions.length - index])).slice(0, MOST_PROGRAMS).map(([version, number]) => {

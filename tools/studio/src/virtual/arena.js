@@ -14,7 +14,7 @@ import { drawLitTile, drawSolids, drawWorld } from '../world/floor.js';
 /** @typedef {import('../world/floor.js').Goal} Goal */
 /** @typedef {import('../page/shapes.js').Pen} Pen */
 
-const STILL_QUERY = matchMedia('(prefers-reduced-motion: reduce)');
+const REDUCED_MOTION_QUERY = matchMedia('(prefers-reduced-motion: reduce)');
 const MARGIN_CM = 4;
 const LEAST_ROBOT_PX = 72; // pixels of a robot that the camera follows,
 const MOST_ROBOT_SHARE = 0.4; // unless that is more of the picture's shorter side
@@ -33,7 +33,7 @@ export class Arena {
   /** The world and the ways, which stay the same from one picture to the next. */
   #floorCanvas = document.createElement('canvas');
   #isFloorDrawn = false;
-  #drawnPoints = 0; // points of the newest way that are on the floor
+  #drawnPointCount = 0; // points of the newest way that are on the floor
   #world = WORLDS[0];
   #robot = ROBOTS[0];
   /** @type {Goal[]} */
@@ -44,10 +44,10 @@ export class Arena {
   #tracks = [[]];
   /** How far each wheel has turned, in cm. @type {[number, number]} */
   #rolled_cm = [0, 0];
-  #seen_ms = 0; // of the robot's time
+  #lastState_ms = 0; // of the robot's time
   /** From when to when it beeps. @type {[number, number]} */
-  #beepTimes = [0, 0];
-  #takenFlags = 0; // flags
+  #beepTimes_ms = [0, 0];
+  #takenFlagCount = 0;
   #moods = new Moods();
   /** What it has shown last, and when. @type {[string, number]} */
   #bubble = ['', 0];
@@ -93,10 +93,10 @@ export class Arena {
     this.#robot = robotOf(robotName) ?? ROBOTS[0];
     this.#tracks = [...this.#tracks.filter((track) => track.length > 1), []].slice(-1 - MOST_OLD_TRACKS);
     this.#rolled_cm = [0, 0];
-    this.#seen_ms = 0;
-    this.#beepTimes = [0, 0];
-    this.#takenFlags = 0;
-    this.#moods.begin();
+    this.#lastState_ms = 0;
+    this.#beepTimes_ms = [0, 0];
+    this.#takenFlagCount = 0;
+    this.#moods.reset();
     this.#bubble = ['', 0];
     this.#isFloorDrawn = false;
   }
@@ -131,16 +131,16 @@ export class Arena {
       track.splice(0, MOST_TRACK_POINTS / 2);
       this.#isFloorDrawn = false;
     }
-    const elapsed_s = Math.max(0, state.now_ms - this.#seen_ms) / 1000;
+    const elapsed_s = Math.max(0, state.now_ms - this.#lastState_ms) / 1000;
     const percentSpeed = (this.#robot?.speed_cm_s ?? 0) / 100;
-    this.#seen_ms = state.now_ms;
+    this.#lastState_ms = state.now_ms;
     this.#rolled_cm[0] += state.motors[0] * percentSpeed * elapsed_s;
     this.#rolled_cm[1] += state.motors[1] * percentSpeed * elapsed_s;
   }
 
   /** @param {number} from_ms of the robot's time @param {number} until_ms */
   showBeep(from_ms, until_ms) {
-    this.#beepTimes = [from_ms, until_ms];
+    this.#beepTimes_ms = [from_ms, until_ms];
   }
 
   /** @param {string} text @param {number} at_ms of the robot's time */
@@ -150,7 +150,7 @@ export class Arena {
 
   /** Shakes the picture, unless this person wants nothing to move. */
   shake() {
-    if (STILL_QUERY.matches || this.#canvas.getAnimations().length) return;
+    if (REDUCED_MOTION_QUERY.matches || this.#canvas.getAnimations().length) return;
     const offsets = ['0 0', '5px 2px', '-5px -2px', '3px -1px', '0 0'];
     this.#canvas.animate(offsets.map((translate) => ({ translate })), SHAKE_MS);
   }
@@ -181,9 +181,9 @@ export class Arena {
     const { start } = world;
     const [x, y, heading] = state?.pose ?? this.#pose ?? [start.x_cm, start.y_cm, start.heading];
     this.#placeCamera(world, x, y, heading);
-    const takenFlags = state?.score?.taken ?? 0;
-    if (takenFlags !== this.#takenFlags) this.#isFloorDrawn = false;
-    this.#takenFlags = takenFlags;
+    const takenFlagCount = state?.score?.taken ?? 0;
+    if (takenFlagCount !== this.#takenFlagCount) this.#isFloorDrawn = false;
+    this.#takenFlagCount = takenFlagCount;
     this.#drawFloor(world);
     const pen = this.#pen;
     pen.setTransform(1, 0, 0, 1, 0, 0);
@@ -231,9 +231,9 @@ export class Arena {
     }
     const margin = MARGIN_CM * scale, floorHeight = height_cm * scale + margin;
     const places = [...this.#goals, ...flags].map((place) => /** @type {Point} */ ([place.x_cm, place.y_cm]));
-    const seenX = middleOf(x, places.map(([placeX]) => placeX), width / scale, robotLength), seenY = middleOf(y, places.map(([, placeY]) => placeY), height / scale, robotLength);
-    const left = edgeOf(width / 2 - seenX * scale, width, width_cm * scale, margin);
-    const bottom = height - edgeOf(height / 2 - seenY * scale, height, height_cm * scale, margin);
+    const middleX = viewCenterOf(x, places.map(([placeX]) => placeX), width / scale, robotLength), middleY = viewCenterOf(y, places.map(([, placeY]) => placeY), height / scale, robotLength);
+    const left = edgeOf(width / 2 - middleX * scale, width, width_cm * scale, margin);
+    const bottom = height - edgeOf(height / 2 - middleY * scale, height, height_cm * scale, margin);
     // Whole pixels of the floor are on whole ones of the picture: else it would be blurred.
     this.#floorToCanvas = new DOMMatrix([scale, 0, 0, -scale, Math.round(left - margin) + margin, Math.round(bottom - floorHeight) + floorHeight]);
   }
@@ -245,14 +245,14 @@ export class Arena {
       pen.setTransform(1, 0, 0, 1, 0, 0);
       pen.clearRect(0, 0, this.#floorCanvas.width, this.#floorCanvas.height);
       this.#useFloorUnits(pen, world);
-      drawWorld(pen, world, this.#goals, this.#takenFlags, this.#floorMark !== null);
+      drawWorld(pen, world, this.#goals, this.#takenFlagCount, this.#floorMark !== null);
       for (const oldTrack of this.#tracks.slice(0, -1)) drawPath(pen, oldTrack, '#bcd2ea', 1);
-      this.#drawnPoints = 0;
+      this.#drawnPointCount = 0;
       this.#isFloorDrawn = true;
     }
     const track = this.#tracks.at(-1) ?? [];
-    if (track.length > this.#drawnPoints) drawPath(pen, track.slice(Math.max(0, this.#drawnPoints - 1)), '#2f74c0', 1);
-    this.#drawnPoints = track.length;
+    if (track.length > this.#drawnPointCount) drawPath(pen, track.slice(Math.max(0, this.#drawnPointCount - 1)), '#2f74c0', 1);
+    this.#drawnPointCount = track.length;
   }
 
   /** Centimetres from the lower left corner of the floor; y goes up. @param {Pen} pen @param {World} world */
@@ -275,12 +275,12 @@ export class Arena {
     pen.save();
     pen.translate(x, y);
     pen.rotate((heading * Math.PI) / 180);
-    const [from_ms, until_ms] = this.#beepTimes;
+    const [from_ms, until_ms] = this.#beepTimes_ms;
     const isBeeping = state !== null && state.is_running && from_ms <= state.now_ms && state.now_ms < until_ms;
     const face = this.#moods.faceOf(state);
-    const isStill = STILL_QUERY.matches;
+    const isMotionReduced = REDUCED_MOTION_QUERY.matches;
     const { name, colour } = pageState.ownRobot.value;
-    drawRobot(pen, robot, state, { rolled: this.#rolled_cm, isBeeping, face: isStill ? { ...face, isBlinking: false } : face, colours: COLOURS[colour] ?? COLOURS[0] });
+    drawRobot(pen, robot, state, { rolled_cm: this.#rolled_cm, isBeeping, face: isMotionReduced ? { ...face, isBlinking: false } : face, colours: COLOURS[colour] ?? COLOURS[0] });
     pen.restore();
     if (name && !state?.is_running) this.#drawName(x, y, name);
     if (state?.touches) this.#drawStar(...state.touches);
@@ -291,13 +291,13 @@ export class Arena {
   /** Below a robot that stands. @param {number} x @param {number} y @param {string} name */
   #drawName(x, y, name) {
     const pen = this.#pen, fontSize_px = 13 * (window.devicePixelRatio || 1);
-    const { x: robot_x, y: robot_y } = this.#floorToCanvas.transformPoint({ x, y });
+    const { x: robotX, y: robotY } = this.#floorToCanvas.transformPoint({ x, y });
     pen.save();
     pen.setTransform(1, 0, 0, 1, 0, 0);
     pen.font = `600 ${fontSize_px}px system-ui, sans-serif`;
     const width = pen.measureText(name).width;
-    const textX = Math.max(2, Math.min(robot_x - width / 2, this.#canvas.width - width - 2));
-    const textY = Math.min(robot_y + 12 * this.#scale + fontSize_px, this.#canvas.height - 4);
+    const textX = Math.max(2, Math.min(robotX - width / 2, this.#canvas.width - width - 2));
+    const textY = Math.min(robotY + 12 * this.#scale + fontSize_px, this.#canvas.height - 4);
     Object.assign(pen, { strokeStyle: '#fff', fillStyle: '#123b63', lineWidth: fontSize_px / 4, lineJoin: 'round' });
     pen.strokeText(name, textX, textY);
     pen.fillText(name, textX, textY);
@@ -313,10 +313,10 @@ export class Arena {
     pen.setTransform(1, 0, 0, 1, 0, 0);
     pen.font = `600 ${fontSize_px}px system-ui, sans-serif`;
     const width = pen.measureText(text).width + fontSize_px, height = 1.6 * fontSize_px;
-    const { x: robot_x, y: robot_y } = this.#floorToCanvas.transformPoint({ x, y });
-    const bubbleX = Math.max(2, Math.min(robot_x + 0.5 * fontSize_px, this.#canvas.width - width - 2));
-    const isBelow = robot_y - 12 * scale - height < 2;
-    const bubbleY = isBelow ? robot_y + 12 * scale : robot_y - 12 * scale - height;
+    const { x: robotX, y: robotY } = this.#floorToCanvas.transformPoint({ x, y });
+    const bubbleX = Math.max(2, Math.min(robotX + 0.5 * fontSize_px, this.#canvas.width - width - 2));
+    const isBelow = robotY - 12 * scale - height < 2;
+    const bubbleY = isBelow ? robotY + 12 * scale : robotY - 12 * scale - height;
     pen.beginPath();
     pen.roundRect(bubbleX, bubbleY, width, height, 0.5 * fontSize_px);
     pen.fillStyle = '#fff';
@@ -365,7 +365,7 @@ export class Arena {
  * What is in the middle of a picture: halfway to where a task leads, as long as the robot is seen whole.
  * @param {number} robotPlace along one side @param {number[]} places where the task leads @param {number} size of the picture @param {number} robotLength
  */
-export function middleOf(robotPlace, places, size, robotLength) {
+export function viewCenterOf(robotPlace, places, size, robotLength) {
   if (!places.length) return robotPlace;
   const mostOffset = Math.max(0, size / 2 - robotLength), offset = (places.reduce((sum, place) => sum + place, 0) / places.length - robotPlace) / 2;
   return robotPlace + Math.max(-mostOffset, Math.min(mostOffset, offset));

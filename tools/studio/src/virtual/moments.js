@@ -5,7 +5,7 @@
 /** @typedef {import('../python.js').RobotState} RobotState */
 /** @typedef {RobotState & {shown: RobotState['events']}} Moment also what each SHOW has shown last, in the order in which they began to */
 
-const WHOLE_INTERVAL = 16; // of so many moments one is kept whole
+const KEYFRAME_INTERVAL = 16; // of so many moments one is kept whole
 const LEAST_MS = 40; // of the robot's time between two moments in which nothing happens
 const RUN_KEYS = new Set(['rows', 'is_full', 'is_over', 'parting']); // of the run, not of a moment
 const MOST_CHARACTERS = 2_000_000; // characters; then of the moments in which nothing happens every other one is forgotten
@@ -21,8 +21,8 @@ export class Moments {
   /** @type {number[]} */
   #partMoments = [];
   /** What each SHOW has shown last. @type {Map<number, RobotState['events'][number]>} */
-  #shown = new Map();
-  #characters = 0;
+  #shownEvents = new Map();
+  #characterCount = 0;
   /** The newest moment, by its keys. @type {Map<string, string>} */
   #lastValues = new Map();
   /** The moment that was asked for last: a picture of it asks several times. @type {{moment: number, state: Moment} | null} */
@@ -38,8 +38,8 @@ export class Moments {
   }
 
   /** @returns {number} characters */
-  get size() {
-    return this.#characters;
+  get characterCount() {
+    return this.#characterCount;
   }
 
   /** @returns {number} of the robot's time, when the first moment was */
@@ -62,13 +62,13 @@ export class Moments {
     return this.#partMoments;
   }
 
-  begin() {
+  clear() {
     this.#stateDiffs = [];
     this.#times_ms = [];
     this.#eventMoments = [];
     this.#partMoments = [];
-    this.#shown = new Map();
-    this.#characters = 0;
+    this.#shownEvents = new Map();
+    this.#characterCount = 0;
     this.#lastValues = new Map();
     this.#cachedMoment = null;
   }
@@ -85,10 +85,10 @@ export class Moments {
     const moment = this.length;
     if (isEvent) this.#eventMoments.push(moment);
     if (isPart) this.#partMoments.push(moment);
-    for (const event of state.events) if (event[1].startsWith('SHOW ')) this.#shown.set(event[2], event);
-    values.set('shown', JSON.stringify([...this.#shown.values()]));
+    for (const event of state.events) if (event[1].startsWith('SHOW ')) this.#shownEvents.set(event[2], event);
+    values.set('shown', JSON.stringify([...this.#shownEvents.values()]));
     this.#append(values, state.now_ms);
-    if (this.#characters > this.#mostCharacters) this.#thinOut();
+    if (this.#characterCount > this.#mostCharacters) this.#thinOut();
   }
 
   /**
@@ -96,26 +96,26 @@ export class Moments {
    * @param {number} now_ms
    */
   #append(values, now_ms) {
-    const isWhole = this.length % WHOLE_INTERVAL === 0;
-    const changedEntries = [...values].filter(([key, value]) => isWhole || this.#lastValues.get(key) !== value);
-    const row = `{${changedEntries.map(([key, value]) => `"${key}":${value}`).join()}}`;
+    const isKeyframe = this.length % KEYFRAME_INTERVAL === 0;
+    const changedEntries = [...values].filter(([key, value]) => isKeyframe || this.#lastValues.get(key) !== value);
+    const stateDiff = `{${changedEntries.map(([key, value]) => `"${key}":${value}`).join()}}`;
     this.#lastValues = values;
     this.#cachedMoment = null;
-    this.#stateDiffs.push(row);
+    this.#stateDiffs.push(stateDiff);
     this.#times_ms.push(now_ms);
-    this.#characters += row.length;
+    this.#characterCount += stateDiff.length;
   }
 
   /** Forgets every other moment in which nothing happens; where none is left, the older half of all. */
   #thinOut() {
     const keptMoments = new Set([...this.#eventMoments, ...this.#partMoments]);
     const keptIndexes = Array.from(this.#stateDiffs, (_, k) => k).filter((k) => keptMoments.has(k) || k % 2 === 0);
-    const firstKept = keptIndexes.length > 0.9 * this.length ? Math.floor(keptIndexes.length / 2) : 0;
-    const moments = keptIndexes.slice(firstKept).map((k) => ({ k, state: this.at(k) }));
+    const firstKeptIndex = keptIndexes.length > 0.9 * this.length ? Math.floor(keptIndexes.length / 2) : 0;
+    const moments = keptIndexes.slice(firstKeptIndex).map((k) => ({ k, state: this.at(k) }));
     const events = new Set(this.#eventMoments), parts = new Set(this.#partMoments);
-    const shown = this.#shown;
-    this.begin();
-    this.#shown = shown;
+    const shown = this.#shownEvents;
+    this.clear();
+    this.#shownEvents = shown;
     for (const { k, state } of moments) {
       if (events.has(k)) this.#eventMoments.push(this.length);
       if (parts.has(k)) this.#partMoments.push(this.length);
@@ -127,7 +127,7 @@ export class Moments {
   at(moment) {
     if (this.#cachedMoment?.moment === moment) return this.#cachedMoment.state;
     const state = {};
-    for (let index = moment - (moment % WHOLE_INTERVAL); index <= moment; index += 1) Object.assign(state, JSON.parse(this.#stateDiffs[index] ?? '{}'));
+    for (let index = moment - (moment % KEYFRAME_INTERVAL); index <= moment; index += 1) Object.assign(state, JSON.parse(this.#stateDiffs[index] ?? '{}'));
     this.#cachedMoment = { moment, state: /** @type {Moment} */ (state) };
     return this.#cachedMoment.state;
   }
@@ -135,8 +135,8 @@ export class Moments {
   /** Each moment, one after the other. @returns {Generator<RobotState>} */
   *states() {
     let state = {};
-    for (const row of this.#stateDiffs) {
-      state = { ...state, ...JSON.parse(row) };
+    for (const stateDiff of this.#stateDiffs) {
+      state = { ...state, ...JSON.parse(stateDiff) };
       yield /** @type {RobotState} */ (state);
     }
   }

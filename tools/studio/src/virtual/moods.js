@@ -15,7 +15,7 @@ const DIZZY_MS = 1500; // of the robot's time, after a crash
 const GLAD_MS = 2000; // after a flag
 const TIRED_MS = 4000; // for which it has not moved
 const BLINK_MS = 140;
-const BLINKS_MS = 2900; // from one blink to the next
+const BLINK_INTERVAL_MS = 2900; // from one blink to the next
 
 const MOST_TIMES = 1000; // crashes, flags and rests that are remembered, each
 
@@ -24,18 +24,18 @@ export const CALM_FACE = { mood: 'calm', ahead: 0, aside: 0, isBlinking: false }
 
 export class Moods {
   #bumpCount = 0;
-  #takenFlags = 0;
+  #takenFlagCount = 0;
   /** When it bumped, and when it took a flag. @type {number[]} */
   #bumpTimes_ms = [];
   /** @type {number[]} */
   #flagTimes_ms = [];
   /** From when until when it stood. @type {{from_ms: number, until_ms: number}[]} */
   #rests = [];
-  #last_ms = 0;
+  #lastState_ms = 0;
   #solved_ms = Infinity;
 
-  begin() {
-    this.#bumpCount = this.#takenFlags = this.#last_ms = 0;
+  reset() {
+    this.#bumpCount = this.#takenFlagCount = this.#lastState_ms = 0;
     this.#bumpTimes_ms = [];
     this.#flagTimes_ms = [];
     this.#rests = [];
@@ -44,21 +44,21 @@ export class Moods {
 
   /** It has solved its task. */
   cheer() {
-    this.#solved_ms = this.#last_ms;
+    this.#solved_ms = this.#lastState_ms;
   }
 
   /** Goes on to a newer state. @param {RobotState} state */
   followState({ now_ms, bumps, score, motors }) {
-    const takenFlags = score?.taken ?? 0, lastRest = this.#rests.at(-1);
+    const takenFlagCount = score?.taken ?? 0, lastRest = this.#rests.at(-1);
     if (bumps > this.#bumpCount) this.#bumpTimes_ms.push(now_ms);
-    if (takenFlags > this.#takenFlags) this.#flagTimes_ms.push(now_ms);
+    if (takenFlagCount > this.#takenFlagCount) this.#flagTimes_ms.push(now_ms);
     if (motors.some((power) => power !== 0)) {
       if (lastRest) lastRest.until_ms = Math.min(lastRest.until_ms, now_ms);
     } else if (!lastRest || lastRest.until_ms < Infinity) this.#rests.push({ from_ms: now_ms, until_ms: Infinity });
     for (const times of [this.#bumpTimes_ms, this.#flagTimes_ms, this.#rests]) if (times.length > MOST_TIMES) times.shift();
     this.#bumpCount = bumps;
-    this.#takenFlags = takenFlags;
-    this.#last_ms = now_ms;
+    this.#takenFlagCount = takenFlagCount;
+    this.#lastState_ms = now_ms;
   }
 
   /** How it looks in a state, also an earlier one; null is one that is off. @param {RobotState | null} state @returns {Face} */
@@ -71,6 +71,6 @@ export class Moods {
     const mood = state.fault || state.touches || isWithin(this.#bumpTimes_ms, DIZZY_MS) ? 'dizzy'
       : now_ms >= this.#solved_ms || isWithin(this.#flagTimes_ms, GLAD_MS) ? 'glad'
         : is_waiting || isResting ? 'tired' : 'calm';
-    return { mood, ahead: (left + right) / 200, aside: (right - left) / 200, isBlinking: is_running && now_ms % BLINKS_MS > BLINKS_MS - BLINK_MS };
+    return { mood, ahead: (left + right) / 200, aside: (right - left) / 200, isBlinking: is_running && now_ms % BLINK_INTERVAL_MS > BLINK_INTERVAL_MS - BLINK_MS };
   }
 }

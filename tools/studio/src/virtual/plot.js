@@ -5,8 +5,8 @@ import { drawPath } from '../page/shapes.js';
 const MOST_SAMPLES = 2000; // samples; then every other one is forgotten
 const LEAST_ROW_PX = 54; // pixels for one value
 const MARGIN_PX = 6;
-const LIGHT_COLORS = { rule: '#c8d2dc', said: '#4a5663', behind: 'rgb(255 255 255 / 80%)', rows: ['#0b4f9e', '#a8200f', '#0d6040', '#7a4b00', '#5b2a86', '#00616b'] };
-const DARK_COLORS = { rule: '#3b4d5f', said: '#b8c5d1', behind: 'rgb(27 40 54 / 80%)', rows: ['#8cc0ff', '#ff9e90', '#62d49d', '#ffc76b', '#c9a6ff', '#6fd6e0'] };
+const LIGHT_COLORS = { rule: '#c8d2dc', label: '#4a5663', labelBackground: 'rgb(255 255 255 / 80%)', rows: ['#0b4f9e', '#a8200f', '#0d6040', '#7a4b00', '#5b2a86', '#00616b'] };
+const DARK_COLORS = { rule: '#3b4d5f', label: '#b8c5d1', labelBackground: 'rgb(27 40 54 / 80%)', rows: ['#8cc0ff', '#ff9e90', '#62d49d', '#ffc76b', '#c9a6ff', '#6fd6e0'] };
 
 /** @typedef {{name: string, value: number | undefined}} Value */
 
@@ -23,7 +23,7 @@ export class Plot {
     this.#canvas = canvas;
   }
 
-  begin() {
+  clear() {
     this.#samples = [];
     this.#keptInterval = 1;
     this.#skipCount = 0;
@@ -53,8 +53,8 @@ export class Plot {
     return [...new Set(this.#samples.flatMap(({ values }) => [...values.keys()]))];
   }
 
-  /** Draws all of it, if it is to be seen. @param {number | null} seen_ms when the moment was at which somebody looks */
-  draw(seen_ms = null) {
+  /** Draws all of it, if it is to be seen. @param {number | null} cursor_ms when the moment was at which somebody looks */
+  draw(cursor_ms = null) {
     const canvas = this.#canvas;
     const container = canvas.parentElement;
     if (!container || container.hidden || !container.clientHeight) return; // what is hidden is not laid out for it
@@ -77,13 +77,13 @@ export class Plot {
     const xOf = (at_ms) => MARGIN_PX + ((at_ms - from_ms) / (until_ms - from_ms)) * plotWidth;
     const step_ms = niceStep((until_ms - from_ms) / Math.max(2, plotWidth / 70));
     this.#colors = document.documentElement.hasAttribute('data-dark') ? DARK_COLORS : LIGHT_COLORS;
-    pen.fillStyle = this.#colors.said;
+    pen.fillStyle = this.#colors.label;
     for (let tick_ms = Math.ceil(from_ms / step_ms) * step_ms; tick_ms <= until_ms; tick_ms += step_ms) {
       drawPath(pen, [[xOf(tick_ms), 0], [xOf(tick_ms), names.length * rowHeight]], this.#colors.rule, 1);
       const label = `${roundText(tick_ms / 1000)} s`;
       pen.fillText(label, Math.min(xOf(tick_ms) + 2, MARGIN_PX + plotWidth - pen.measureText(label).width), names.length * rowHeight + 14);
     }
-    if (seen_ms !== null) drawPath(pen, [[xOf(seen_ms), 0], [xOf(seen_ms), names.length * rowHeight]], this.#colors.said, 2);
+    if (cursor_ms !== null) drawPath(pen, [[xOf(cursor_ms), 0], [xOf(cursor_ms), names.length * rowHeight]], this.#colors.label, 2);
     names.forEach((name, index) => this.#drawRow(pen, name, index * rowHeight, rowHeight, xOf, this.#colors.rows[index % this.#colors.rows.length] ?? ''));
   }
 
@@ -128,7 +128,7 @@ export class Plot {
     pen.stroke();
     const range = low === high ? roundText(lastValue) : `${roundText(low)} – ${roundText(high)}`;
     const label = `${name}: ${roundText(lastValue)}  (${range})`;
-    pen.fillStyle = this.#colors.behind;
+    pen.fillStyle = this.#colors.labelBackground;
     pen.fillRect(MARGIN_PX, top + 2, pen.measureText(label).width + 6, 16);
     pen.fillStyle = color;
     pen.fillText(label, MARGIN_PX + 3, top + 14);

@@ -10,7 +10,7 @@ import { CALM_FACE } from './moods.js';
 /** @typedef {import('../page/shapes.js').Pen} Pen */
 /**
  * @typedef {object} RobotView what a robot does that its state does not say
- * @property {[number, number]} rolled how far each wheel has turned, in cm
+ * @property {[number, number]} rolled_cm how far each wheel has turned, in cm
  * @property {boolean} isBeeping
  * @property {import('./moods.js').Face} [face]
  * @property {readonly string[]} [colours] of its body and its edge
@@ -37,8 +37,8 @@ export function drawRobot(pen, robot, state, view) {
   const [bodyColour = '', edgeColour = ''] = state?.fault ? ['#c8372a', '#5c130c'] : view.colours ?? GREEN_COLOURS;
   drawPath(pen, robot.outline, edgeColour, 0.8, bodyColour);
   const halfBase = robot.wheel_base_cm / 2, scale = scaleOf(robot);
-  drawWheel(pen, halfBase, view.rolled[0], scale);
-  drawWheel(pen, -halfBase, view.rolled[1], scale);
+  drawWheel(pen, halfBase, view.rolled_cm[0], scale);
+  drawWheel(pen, -halfBase, view.rolled_cm[1], scale);
   drawFace(pen, robot, view.face ?? CALM_FACE, bodyColour, edgeColour);
   pen.save();
   pen.scale(scale, scale);
@@ -98,8 +98,8 @@ function drawWheel(pen, y, rolled_cm, scale) {
   pen.roundRect(-length / 2, y - width / 2, length, width, 1);
   pen.fill();
   // What is above of a wheel goes ahead, as the robot does.
-  const firstTread_x = (((rolled_cm % tread) + tread) % tread) - length / 2;
-  for (let x = firstTread_x; x < length / 2 - 0.2; x += tread) {
+  const firstTreadX = (((rolled_cm % tread) + tread) % tread) - length / 2;
+  for (let x = firstTreadX; x < length / 2 - 0.2; x += tread) {
     if (x > 0.2 - length / 2) drawPath(pen, [[x, y - width / 2 + 0.5], [x, y + width / 2 - 0.5]], '#b9c2cb', 0.5);
   }
 }

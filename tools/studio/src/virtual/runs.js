@@ -42,12 +42,12 @@ export class Run {
   /** It cannot be played again: somebody else has driven it. */
   isJudged = false;
   /** The file that it was opened from; nothing of one that was recorded here. */
-  file = '';
+  fileText = '';
   /** When it is now, for a run that is still recorded. @type {(() => number) | null} */
-  clock = null;
+  readClock = null;
   /** Where it and the recorded one part, once it was played again. @type {import('../python.js').Parting | null} */
   parting = null;
-  #characters = 0;
+  #characterCount = 0;
   #bumpCount = 0;
   /** @type {import('./why.js').CodeBlock[] | null} */
   #whenBlocks = null;
@@ -66,12 +66,12 @@ export class Run {
   }
 
   /** @returns {number} characters */
-  get size() {
-    return this.moments.size + this.#characters + this.file.length;
+  get characterCount() {
+    return this.moments.characterCount + this.#characterCount + this.fileText.length;
   }
 
   /** @returns {number} seconds */
-  get seconds() {
+  get duration_s() {
     if (this.moments.length) return (this.moments.last_ms - this.moments.first_ms) / 1000;
     return ((this.rows.at(-1)?.[0] ?? 0) - (this.rows[0]?.[0] ?? 0)) / 1000;
   }
@@ -85,7 +85,7 @@ export class Run {
     if (state.bumps > this.#bumpCount) this.mark(state.now_ms, 'BUMP');
     this.#bumpCount = state.bumps;
     this.#markWhens(state);
-    if (this.origin.of === 'virtual' && !this.file) {
+    if (this.origin.of === 'virtual' && !this.fileText) {
       this.markKeys(state.rows ?? []);
       for (const row of state.rows ?? []) this.addRow(row);
     }
@@ -101,14 +101,14 @@ export class Run {
   #markWhens({ now_ms, places }) {
     const { origin: { text }, program } = this;
     this.#whenBlocks ??= blocksOf(text, program.places, /^WHEN\b/i);
-    const begunBlocks = this.#whenBlocks.filter(({ has: hasOffset }) => places.some((offset) => hasOffset(offset, true)));
+    const begunBlocks = this.#whenBlocks.filter(({ hasOffset }) => places.some((offset) => hasOffset(offset, true)));
     if (begunBlocks.some((block) => !this.#begunBlocks.includes(block))) this.mark(now_ms, 'WHEN');
     this.#begunBlocks = begunBlocks;
   }
 
   /** It is played: what is seen of it begins anew. */
   restart() {
-    this.moments.begin();
+    this.moments.clear();
     this.marks = [];
     this.parting = null;
     this.#bumpCount = 0;
@@ -128,7 +128,7 @@ export class Run {
   }
 
   /** What a sensor read last until a time of the robot, as the program read it. @param {string} name @param {number} at_ms @returns {string | undefined} */
-  readAt(name, at_ms) {
+  readingAt(name, at_ms) {
     const prefix = `READ ${name} `;
     const rows = this.rows.length ? this.rows : this.fileRows;
     return rows.findLast(([event_ms, event]) => event_ms <= at_ms && event.startsWith(prefix))?.[1].slice(prefix.length);
@@ -137,7 +137,7 @@ export class Run {
   /** @param {Row} row */
   addRow(row) {
     this.rows.push(row);
-    this.#characters += row[1].length + 12;
+    this.#characterCount += row[1].length + 12;
   }
 }
 
@@ -152,19 +152,19 @@ export class Runs {
   }
 
   /** @returns {number} characters */
-  get size() {
-    return this.#runs.reduce((sum, run) => sum + run.size, 0);
+  get characterCount() {
+    return this.#runs.reduce((sum, run) => sum + run.characterCount, 0);
   }
 
   /** @param {Run} run is the newest one from now on */
   addRun(run) {
     run.number = this.#runCount += 1;
     this.#runs = [...this.#runs.filter(({ rows, moments }) => rows.length || moments.length > 1), run];
-    this.trim();
+    this.forgetOldest();
   }
 
   /** Forgets the oldest ones, where there are too many or they are too large. */
-  trim() {
-    while (this.#runs.length > 1 && (this.#runs.length > MOST_RUNS || this.size > MOST_CHARACTERS)) this.#runs.shift();
+  forgetOldest() {
+    while (this.#runs.length > 1 && (this.#runs.length > MOST_RUNS || this.characterCount > MOST_CHARACTERS)) this.#runs.shift();
   }
 }

@@ -1,7 +1,7 @@
 // The window with the last runs: one is seen again, saved as a file, and a file is opened.
 
 import { element } from '../page/elements.js';
-import { bytesOf, download, onFileChosen } from '../page/files.js';
+import { readBytes, downloadText, onFileChosen } from '../page/files.js';
 import { makeButton, makeElement } from '../page/made.js';
 import { pageState } from '../page/page_state.js';
 import { bugSentence } from '../page/faults.js';
@@ -9,12 +9,12 @@ import { textKey, text } from '../page/texts.js';
 
 /** @typedef {import('./runs.js').Run} Run */
 /** @typedef {import('./runs.js').Row} Row */
-/** @typedef {{text: string, robot: string, of: 'virtual' | 'real', world: unknown, end_ms: number, shapes: import('../world/parts.js').World | null, rows: Row[], is_by_button: boolean, file: string}} OpenedRun */
+/** @typedef {{text: string, robot: string, of: 'virtual' | 'real', world: unknown, end_ms: number, shapes: import('../world/parts.js').World | null, rows: Row[], is_by_button: boolean, fileText: string}} OpenedRun */
 
 const FILE_EXTENSION = '.tsr';
 
 export class RunsWindow {
-  #window = element('runs', HTMLDialogElement);
+  #dialog = element('runs', HTMLDialogElement);
   #page;
 
   /**
@@ -29,9 +29,9 @@ export class RunsWindow {
     element('runs_open', HTMLButtonElement).addEventListener('click', () => {
       this.#showNotice('');
       this.#show();
-      this.#window.showModal();
+      this.#dialog.showModal();
     });
-    element('runs_close', HTMLButtonElement).addEventListener('click', () => this.#window.close());
+    element('runs_close', HTMLButtonElement).addEventListener('click', () => this.#dialog.close());
     element('run_open', HTMLButtonElement).addEventListener('click', () => element('run_file', HTMLInputElement).click());
     onFileChosen('run_file', (file) => this.open(file));
     addEventListener('dragover', (event) => {
@@ -49,7 +49,7 @@ export class RunsWindow {
   /** @param {File} file of a run: it is played, or why it cannot be is told */
   async open(file) {
     try {
-      await this.openData(await bytesOf(file), file.name);
+      await this.openData(await readBytes(file), file.name);
     } catch {
       this.#showRefusal(file.name, text('unreadable'));
     }
@@ -62,21 +62,21 @@ export class RunsWindow {
       this.#showRefusal(name, text(textKey(`record_${answer.what}`), { line: answer.line }));
       return;
     }
-    this.#window.close();
-    this.#page.play({ ...answer, file: new TextDecoder().decode(data) }, knownRun);
+    this.#dialog.close();
+    this.#page.play({ ...answer, fileText: new TextDecoder().decode(data) }, knownRun);
   }
 
   /** @param {Run} run @returns {Promise<string>} its file */
   async fileOf(run) {
-    if (run.file) return run.file;
+    if (run.fileText) return run.fileText;
     const { origin, rows, end_ms } = run;
-    const answer = await this.#page.python.ask({ do: 'write_run', ...origin, rows, end_ms: end_ms ?? run.clock?.() ?? rows.at(-1)?.[0] ?? 0 });
+    const answer = await this.#page.python.ask({ do: 'write_run', ...origin, rows, end_ms: end_ms ?? run.readClock?.() ?? rows.at(-1)?.[0] ?? 0 });
     return answer.file;
   }
 
   /** @param {string} name @param {string} reason */
   #showRefusal(name, reason) {
-    if (this.#window.open) this.#showNotice(reason);
+    if (this.#dialog.open) this.#showNotice(reason);
     else pageState.note.set(text('not_opened', { name, why: reason }));
   }
 
@@ -87,14 +87,14 @@ export class RunsWindow {
 
   #show() {
     const rows = this.#page.runs.newestFirst.map((run) => {
-      const title = text(run.origin.of === 'real' ? 'run_real' : 'run_virtual', { number: run.number, seconds: run.seconds.toFixed(1) });
-      const seeButton = makeButton('', () => {
-        this.#window.close();
+      const title = text(run.origin.of === 'real' ? 'run_real' : 'run_virtual', { number: run.number, seconds: run.duration_s.toFixed(1) });
+      const showButton = makeButton('', () => {
+        this.#dialog.close();
         this.#page.show(run);
       }, title);
       const saveButton = makeButton('run_save', () => this.#saveRun(run));
-      saveButton.disabled = run.isJudged || !(run.file || run.rows.length);
-      return makeElement('li', '', seeButton, makeElement('code', '', beginningOf(run.origin.text)), saveButton);
+      saveButton.disabled = run.isJudged || !(run.fileText || run.rows.length);
+      return makeElement('li', '', showButton, makeElement('code', '', beginningOf(run.origin.text)), saveButton);
     });
     element('runs_list', HTMLElement).replaceChildren(...rows);
     if (!rows.length) this.#showNotice(text('runs_none'));
@@ -103,7 +103,7 @@ export class RunsWindow {
   /** @param {Run} run */
   async #saveRun(run) {
     try {
-      download(`${text('run_name')}${FILE_EXTENSION}`, await this.fileOf(run));
+      downloadText(`${text('run_name')}${FILE_EXTENSION}`, await this.fileOf(run));
     } catch (error) {
       this.#showNotice(bugSentence(error));
     }

@@ -85,7 +85,7 @@ export class Simulator {
     this.#onChange();
   }
 
-  async goOn() {
+  async resume() {
     if (this.phase !== 'paused') return;
     this.phase = 'running';
     if (this.state?.is_held) await this.#ask({ do: 'go_on' });

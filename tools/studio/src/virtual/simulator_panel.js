@@ -2,13 +2,13 @@
 
 import { Arena } from './arena.js';
 import { BlockNames } from '../blocks/names.js';
-import { labelAt, sayOnBlocks } from '../blocks/said.js';
+import { labelAt, findingOnBlocks } from '../blocks/said.js';
 import { element, setHidden, setText } from '../page/elements.js';
 import { onEscapeKey } from '../page/escape.js';
 import { faultSentence } from '../page/faults.js';
-import { download } from '../page/files.js';
+import { downloadText } from '../page/files.js';
 import { rangeAt, StopOffsets } from '../writing/parts.js';
-import { shownName, showAt } from '../writing/shows.js';
+import { shownName, findShow } from '../writing/shows.js';
 import { makeDialPicture, replaceOptions, makePictureOption } from '../page/pictures.js';
 import { Plot } from './plot.js';
 import { Simulator } from './simulator.js';
@@ -18,8 +18,8 @@ import { Run, Runs } from './runs.js';
 import { RunsWindow } from './runs_window.js';
 import { TimeLine } from './time_line.js';
 import { pageState } from '../page/page_state.js';
-import { readingText, numberOfShown, percentOfRange } from '../page/readings.js';
-import { needStop } from '../page/stop_place.js';
+import { readingText, parseShownValue, percentOfRange } from '../page/readings.js';
+import { setStopNeeded } from '../page/stop_place.js';
 import { currentLanguage, textKey, text } from '../page/texts.js';
 import { isSecondPress } from '../page/twice.js';
 import { devicesOf, deviceName } from '../page/words.js';
@@ -28,7 +28,7 @@ import { celebrate } from '../lesson/celebration.js';
 import { storeStars, starsKeyOfWorld } from '../lesson/progress.js';
 import { WorldChoice } from '../world/choice.js';
 import { showRows, variableText } from '../page/rows.js';
-import { boutEnd, bumpSentence, starsText, RunAnnouncer } from './where.js';
+import { boutEndText, bumpSentence, starsText, RunAnnouncer } from './where.js';
 import { blocksOf, conditionsAt } from './why.js';
 import { WorldDrawing } from '../world/drawing.js';
 
@@ -39,10 +39,10 @@ import { WorldDrawing } from '../world/drawing.js';
  * @typedef {object} Page what this part needs of the page
  * @property {import('../python.js').Python} python
  * @property {import('../programs/work.js').Work} work
- * @property {() => Promise<CheckResult | null>} whenCompiled what the compiler says of the newest text, when it is done; null if it cannot say
- * @property {() => void} remember
+ * @property {() => Promise<CheckResult | null>} whenChecked what the compiler says of the newest text, when it is done; null if it cannot say
+ * @property {() => void} storeCurrentWork
  * @property {import('../remote/pad.js').Pad} pad
- * @property {(program: {text: string, robot: string}) => void} put the program of a recorded run into the editor
+ * @property {(program: {text: string, robot: string}) => void} putProgram the program of a recorded run into the editor
  */
 
 const MOST_TRACE_LINES = 200; // lines of the trace
@@ -58,7 +58,7 @@ export class SimulatorPanel {
   #page;
   #startCount = 0; // one that STOP or a newer one has overtaken does nothing
   #isWaiting = false; // for the compiler
-  #isAlone = false; // what runs is a part of the program
+  #isPartRun = false; // what runs is a part of the program
   #onRunOver = () => {}; // the run of a lesson is over
   #simulator;
   #arena = new Arena(element('arena', HTMLCanvasElement));
@@ -66,7 +66,7 @@ export class SimulatorPanel {
   #sounds = new Sounds();
   #stage;
   #announcer = new RunAnnouncer();
-  #timeLine = new TimeLine(() => this.#lookBack());
+  #timeLine = new TimeLine(() => this.#onSeek());
   runs = new Runs();
   #runsWindow;
   /** The newest one. @type {Run | null} */
@@ -85,11 +85,11 @@ export class SimulatorPanel {
   #note = '';
   #traceText = ''; // of the trace
   #lastShown_ms = 0; // when more than the robot was shown last
-  #isReadingNext = false; // what is measured, not where the program is
+  #areReadingsNext = false; // what is measured, not where the program is
   /** @type {CheckResult['places']} */
   #places = [];
   /** Where what runs stops; a run that is shown again stops nowhere. @type {StopOffsets | null} */
-  #stops = null;
+  #stopOffsets = null;
   /** @type {CheckResult['variables']} */
   #variables = [];
   #runButton = element('run', HTMLButtonElement);
@@ -106,7 +106,7 @@ export class SimulatorPanel {
 
   /** @param {Page} page */
   constructor(page) {
-    const { python, work, remember } = page;
+    const { python, work, storeCurrentWork } = page;
     this.#page = page;
     this.#blockNames = new BlockNames(python, () => this.#show());
     this.#runsWindow = new RunsWindow({ python, runs: this.runs, show: (run) => this.#showRun(run), play: (openedRun, knownRun) => this.#playOpened(openedRun, knownRun) });
@@ -118,9 +118,9 @@ export class SimulatorPanel {
       else this.#show();
     });
     this.#worldDrawing = new WorldDrawing(python, this.#arena, {
-      world: () => this.#shownWorld,
+      getWorld: () => this.#shownWorld,
       worldChoice: this.#worldChoice,
-      robot: () => {
+      getRobotPlace: () => {
         const [x, y] = this.#simulator.state?.pose ?? [this.#shownWorld.start.x_cm, this.#shownWorld.start.y_cm];
         return [x, y];
       },
@@ -129,60 +129,60 @@ export class SimulatorPanel {
         this.#switchOff();
         this.#chooseView('seen_arena');
       },
-      put: (world, isOther) => {
+      putWorld: (world, isOther) => {
         this.#previewWorld = null;
         this.#worldChoice.putOwn(world, isOther);
-        remember();
+        storeCurrentWork();
         this.#switchOff();
       },
-      preview: (world) => {
+      previewWorld: (world) => {
         this.#previewWorld = world;
         this.#switchOff();
       },
-      tell: () => this.#show(),
+      refresh: () => this.#show(),
     });
     this.#runButton.addEventListener('click', () => this.#start(false));
     this.#pauseButton.addEventListener('click', (event) => {
       if (isSecondPress(event)) return; // it was pressed twice to pause
-      this.#lookAtNow();
-      if (this.#simulator.phase === 'paused') this.#simulator.goOn();
+      this.#returnToNewest();
+      if (this.#simulator.phase === 'paused') this.#simulator.resume();
       else this.#pauseRun();
     });
     element('step', HTMLButtonElement).addEventListener('click', () => {
-      this.#lookAtNow();
+      this.#returnToNewest();
       if (this.#simulator.phase === 'running') this.#pauseRun();
       else if (this.#simulator.phase === 'paused') this.#simulator.step();
       else this.#start(true);
     });
     this.#pushButton.addEventListener('click', () => {
-      this.#lookAtNow();
+      this.#returnToNewest();
       this.#simulator.pressButton();
     });
     element('stop', HTMLButtonElement).addEventListener('click', () => this.stop());
     onEscapeKey(() => this.stop());
-    const speed = element('speed', HTMLSelectElement);
-    replaceOptions(speed, SPEEDS.map((speed, index) => makePictureOption(`× ${speed}`, String(speed), makeDialPicture(index / (SPEEDS.length - 1)))));
-    speed.value = '1';
-    speed.addEventListener('change', () => {
-      this.#simulator.speed = Number(speed.value);
+    const speedSelect = element('speed', HTMLSelectElement);
+    replaceOptions(speedSelect, SPEEDS.map((speed, index) => makePictureOption(`× ${speed}`, String(speed), makeDialPicture(index / (SPEEDS.length - 1)))));
+    speedSelect.value = '1';
+    speedSelect.addEventListener('change', () => {
+      this.#simulator.speed = Number(speedSelect.value);
     });
     element('save_trace', HTMLButtonElement).addEventListener('click', () => {
-      download(text('trace_name'), this.#simulator.trace.map((line) => `${line}\n`).join(''));
+      downloadText(text('trace_name'), this.#simulator.trace.map((line) => `${line}\n`).join(''));
     });
     this.#whyButton.addEventListener('click', () => {
       this.#isWhyAsked = !this.#isWhyAsked;
       this.#show();
     });
-    for (const viewButton of Object.keys(RUN_VIEWS)) element(viewButton, HTMLButtonElement).addEventListener('click', () => this.#chooseView(viewButton));
+    for (const viewButtonId of Object.keys(RUN_VIEWS)) element(viewButtonId, HTMLButtonElement).addEventListener('click', () => this.#chooseView(viewButtonId));
     const soundButton = element('sound', HTMLButtonElement);
     const applySound = () => {
-      this.#sounds.mute(!work.sound);
+      this.#sounds.setMuted(!work.sound);
       soundButton.setAttribute('aria-pressed', String(work.sound));
     };
     soundButton.addEventListener('click', () => {
       work.sound = !work.sound;
       applySound();
-      remember();
+      storeCurrentWork();
     });
     applySound();
     element('erase_ways', HTMLButtonElement).addEventListener('click', () => {
@@ -202,22 +202,22 @@ export class SimulatorPanel {
     pageState.areBlocksNamed.subscribe(() => {
       if (pageState.language.value) this.#show();
     });
-    pageState.robotName.subscribe(() => this.begin());
-    pageState.breakpoints.subscribe(() => this.#breakpointsChanged());
+    pageState.robotName.subscribe(() => this.reset());
+    pageState.breakpoints.subscribe(() => this.#onBreakpointsChange());
     pageState.programText.subscribe(() => { // what runs is no longer what is seen
       this.#places = [];
       if (!this.#isWaiting) this.#note = ''; // which was said of the text before
       this.#show();
     });
     this.#stage = new Stage({
-      look: (camera) => {
+      setCamera: (camera) => {
         this.#arena.camera = camera;
         this.#arena.resize();
         this.#arena.draw(this.#shownState);
       },
       stop: () => this.stop(),
     });
-    this.begin();
+    this.reset();
     this.#restoring = this.#restoreWorlds();
   }
 
@@ -237,7 +237,7 @@ export class SimulatorPanel {
    * @param {import('../lesson/lessons.js').JudgedRun} run
    */
   async play(run) {
-    await this.#start(false, run, isStill() ? run.until_ms : run.until_ms / LONGEST_REPLAY_MS);
+    await this.#start(false, run, isMotionReduced() ? run.until_ms : run.until_ms / LONGEST_REPLAY_MS);
     if (this.#isDriving) await new Promise((resolve) => { this.#onRunOver = () => resolve(undefined); });
     this.#stage.shrink();
   }
@@ -249,20 +249,20 @@ export class SimulatorPanel {
    * @param {() => void} showArena has it seen
    */
   async tryAlone(programText, isAsked, showArena) {
-    const isPeek = !isAsked && this.#stage.canPeek, isSeen = !this.#stage.canPeek && element('arena', HTMLCanvasElement).checkVisibility();
-    if ((this.#isDriving && !this.#isAlone) || this.#isWaiting || !(isSeen || isAsked || isPeek)) return;
-    if (!isSeen && !isPeek) showArena();
+    const isPeek = !isAsked && this.#stage.canPeek, isVisible = !this.#stage.canPeek && element('arena', HTMLCanvasElement).checkVisibility();
+    if ((this.#isDriving && !this.#isPartRun) || this.#isWaiting || !(isVisible || isAsked || isPeek)) return;
+    if (!isVisible && !isPeek) showArena();
     const startNumber = ++this.#startCount;
     const request = { do: 'check', robot: pageState.robotName.value, language: pageState.language.value };
     const checkResult = /** @type {CheckResult} */ (await this.#page.python.ask(request, new TextEncoder().encode(programText)));
     if (startNumber !== this.#startCount) return;
     if (!checkResult.image) {
       const mistake = checkResult.findings.find(({ severity }) => severity === 'mistake');
-      pageState.note.set(text('alone_wrong', { why: mistake ? sayOnBlocks(mistake).message : '' })); // it is a block that is tried alone
+      pageState.note.set(text('alone_wrong', { why: mistake ? findingOnBlocks(mistake).message : '' })); // it is a block that is tried alone
       return;
     }
     const endPeek = isPeek ? this.#stage.peek() : () => {};
-    await this.#start(false, null, 0, null, { text: programText, checked: checkResult });
+    await this.#start(false, null, 0, null, { text: programText, checkResult });
     if (this.#isDriving) await new Promise((resolve) => { this.#onRunOver = () => resolve(undefined); });
     endPeek();
   }
@@ -283,7 +283,7 @@ export class SimulatorPanel {
   /** Another program begins: with its robot at the start, on a floor without trails. */
   beginAnew() {
     this.#arena.eraseTracks();
-    this.begin();
+    this.reset();
     this.#stage.shrink(); // it is written first
   }
 
@@ -302,20 +302,20 @@ export class SimulatorPanel {
 
   /** How the robot is, or was at the moment at which somebody looks. */
   get #shownState() {
-    return this.#timeLine.seenState ?? this.#simulator.state;
+    return this.#timeLine.pastState ?? this.#simulator.state;
   }
 
   /** What is seen of which robot. */
   get #shownRobotName() {
-    return this.#timeLine.seenState ? this.#timeLine.run.origin.robot : pageState.robotName.value;
+    return this.#timeLine.pastState ? this.#timeLine.run.origin.robot : pageState.robotName.value;
   }
 
   get #shownVariables() {
-    return this.#timeLine.seenState ? this.#timeLine.run.program.variables : this.#variables;
+    return this.#timeLine.pastState ? this.#timeLine.run.program.variables : this.#variables;
   }
 
   get #shownPlaces() {
-    if (!this.#timeLine.seenState || this.#timeLine.run === this.#newestRun) return this.#places;
+    if (!this.#timeLine.pastState || this.#timeLine.run === this.#newestRun) return this.#places;
     const { origin, program } = this.#timeLine.run;
     return origin.text === pageState.programText.value ? program.places : [];
   }
@@ -332,9 +332,9 @@ export class SimulatorPanel {
       return;
     }
     if (this.#simulator.phase === 'running') this.#pauseRun();
-    this.#timeLine.begin(run);
+    this.#timeLine.setRun(run);
     this.#drawTrack(run);
-    this.#timeLine.lookAt(run.moments.last_ms);
+    this.#timeLine.seek(run.moments.last_ms);
   }
 
   /** @param {Run} run its world, and the way that it has taken */
@@ -344,8 +344,8 @@ export class SimulatorPanel {
   }
 
   /** The file of the newest run that can be played again, or nothing. @returns {Promise<string>} */
-  async newestRunFile() {
-    const run = this.runs.newestFirst.find((candidate) => !candidate.isJudged && (candidate.file || candidate.rows.length));
+  async fetchNewestRunFile() {
+    const run = this.runs.newestFirst.find((candidate) => !candidate.isJudged && (candidate.fileText || candidate.rows.length));
     return run ? this.#runsWindow.fileOf(run) : '';
   }
 
@@ -357,34 +357,34 @@ export class SimulatorPanel {
   /** Plays a recorded run, which may be kept already. @param {import('./runs_window.js').OpenedRun} openedRun @param {Run | null} knownRun */
   async #playOpened(openedRun, knownRun) {
     await this.#simulator.stop();
-    this.#page.put(openedRun);
+    this.#page.putProgram(openedRun);
     if (typeof openedRun.world === 'string') this.#worldChoice.choose(openedRun.world);
     else if (openedRun.world && openedRun.shapes) {
       this.#worldChoice.bringWorld({ request: openedRun.world, shapes: openedRun.shapes, label: () => text('world_of_run'), goals: [] });
     }
-    this.begin();
+    this.reset();
     this.#chooseView('seen_arena');
     const duration_ms = Math.max(1, openedRun.rows.at(-1)?.[0] ?? 0);
-    await this.#start(false, null, duration_ms / LONGEST_REPLAY_MS, { opened: openedRun, again: knownRun });
+    await this.#start(false, null, duration_ms / LONGEST_REPLAY_MS, { openedRun, knownRun });
   }
 
   /** What runs stands still while somebody looks back. */
-  #lookBack() {
+  #onSeek() {
     if (this.#simulator.phase === 'running') this.#pauseRun();
     this.#arena.showBubble('', 0);
-    this.#pastShownValues = this.#keepShownValues(new Map(), this.#timeLine.shown);
+    this.#pastShownValues = this.#keepShownValues(new Map(), this.#timeLine.shownEvents);
     this.#show();
   }
 
   /** The newest moment is seen again. */
-  #lookAtNow() {
-    if (!this.#timeLine.seenState) return;
+  #returnToNewest() {
+    if (!this.#timeLine.pastState) return;
     if (this.#newestRun && this.#timeLine.run !== this.#newestRun) {
-      this.#timeLine.begin(this.#newestRun);
+      this.#timeLine.setRun(this.#newestRun);
       this.#drawTrack(this.#newestRun);
     }
-    this.#timeLine.leave();
-    this.#keepShownValues(this.#shownValues, this.#timeLine.shown);
+    this.#timeLine.returnToNewest();
+    this.#keepShownValues(this.#shownValues, this.#timeLine.shownEvents);
     this.#show();
   }
 
@@ -393,11 +393,11 @@ export class SimulatorPanel {
     return phase === 'running' || phase === 'paused';
   }
 
-  /** Shows the robot from above, or its values, or what it has done. @param {string} chosenButton a button */
-  #chooseView(chosenButton) {
-    for (const [viewButton, viewId] of Object.entries(RUN_VIEWS)) {
-      element(viewButton, HTMLButtonElement).setAttribute('aria-pressed', String(viewButton === chosenButton));
-      element(viewId, HTMLElement).hidden = viewButton !== chosenButton;
+  /** Shows the robot from above, or its values, or what it has done. @param {string} chosenButtonId a button */
+  #chooseView(chosenButtonId) {
+    for (const [viewButtonId, viewId] of Object.entries(RUN_VIEWS)) {
+      element(viewButtonId, HTMLButtonElement).setAttribute('aria-pressed', String(viewButtonId === chosenButtonId));
+      element(viewId, HTMLElement).hidden = viewButtonId !== chosenButtonId;
     }
     this.#show();
   }
@@ -409,8 +409,8 @@ export class SimulatorPanel {
 
   /** Another world has been chosen. */
   #enterWorld() {
-    this.#page.remember();
-    this.begin();
+    this.#page.storeCurrentWork();
+    this.reset();
   }
 
   /**
@@ -422,15 +422,15 @@ export class SimulatorPanel {
   async showLesson(lessonNumber, seed, label) {
     const { world, goals } = await this.#page.python.ask({ do: 'lesson_world', number: lessonNumber, seed });
     this.#worldChoice.bringWorld({ request: { lesson: lessonNumber, seed }, shapes: world, label, goals });
-    this.begin();
+    this.reset();
     this.#chooseView('seen_arena');
   }
 
   /** Another robot or world: what drove there has ended. */
-  begin() {
-    this.#worldDrawing.letGo();
+  reset() {
+    this.#worldDrawing.cancelDrag();
     this.#previewWorld = null;
-    this.#worldDrawing.forget();
+    this.#worldDrawing.reset();
     this.#switchOff();
     this.#stage?.showWorld();
   }
@@ -444,8 +444,8 @@ export class SimulatorPanel {
   #switchOff() {
     this.stop();
     this.#simulator.leaveRun();
-    this.#plot.begin();
-    this.#timeLine.begin();
+    this.#plot.clear();
+    this.#timeLine.setRun();
     this.#note = '';
     this.#shownValues.clear();
     this.#variables = [];
@@ -456,44 +456,44 @@ export class SimulatorPanel {
   /** Brings the worlds back that were drawn here; none is drawn before, for it would take their place. */
   async #restoreWorlds() {
     try {
-      const isWhole = await this.#worldChoice.restoreOwn();
+      const isNewestRestored = await this.#worldChoice.restoreOwn();
       if (this.#page.work.world !== OWN_WORLD) return;
-      this.begin();
-      if (isWhole) return;
+      this.reset();
+      if (isNewestRestored) return;
       this.#note = text('world_lost');
       this.#show();
     } catch {
       // the page says that there is no compiler
     } finally {
-      this.#worldDrawing.allow();
+      this.#worldDrawing.enable();
     }
   }
 
   /** The program is to stop elsewhere. */
-  #breakpointsChanged() {
-    if (!this.#stops) return;
-    const offsetsBefore = this.#stops.offsets.join();
-    this.#stops.update(pageState.breakpoints.value, this.#places);
-    if (this.#stops.offsets.join() !== offsetsBefore) this.#simulator.setBreakpoints(this.#stops.offsets);
+  #onBreakpointsChange() {
+    if (!this.#stopOffsets) return;
+    const offsetsBefore = this.#stopOffsets.offsets.join();
+    this.#stopOffsets.update(pageState.breakpoints.value, this.#places);
+    if (this.#stopOffsets.offsets.join() !== offsetsBefore) this.#simulator.setBreakpoints(this.#stopOffsets.offsets);
   }
 
   /**
    * @param {boolean} isPaused
    * @param {import('../lesson/lessons.js').JudgedRun | null} judgedRun
    * @param {number} leastSpeed times as quick as the robot
-   * @param {{opened: import('./runs_window.js').OpenedRun, again: Run | null} | null} replay a recorded run
-   * @param {{text: string, checked: CheckResult} | null} partProgram a part of the program
+   * @param {{openedRun: import('./runs_window.js').OpenedRun, knownRun: Run | null} | null} replay a recorded run
+   * @param {{text: string, checkResult: CheckResult} | null} partProgram a part of the program
    */
   async #start(isPaused, judgedRun = null, leastSpeed = 0, replay = null, partProgram = null) {
     this.#onRunOver();
     const startNumber = ++this.#startCount;
     this.#worldDrawing.notice = '';
-    let program = partProgram?.checked ?? pageState.checkResult.value;
+    let program = partProgram?.checkResult ?? pageState.checkResult.value;
     if (!program) {
       this.#isWaiting = true;
       this.#note = text(this.#page.python.isLate ? 'run_waits' : 'still_compiling');
       this.#show();
-      program = await this.#page.whenCompiled();
+      program = await this.#page.whenChecked();
       if (program) await this.#restoring;
       if (startNumber !== this.#startCount) return;
       this.#isWaiting = false;
@@ -509,21 +509,21 @@ export class SimulatorPanel {
     const stateBefore = this.#simulator.state;
     const pose = partProgram && stateBefore && !stateBefore.touches ? stateBefore.pose : null; // a part goes on where the robot has room
     this.#arena.begin(this.#worldChoice.shownWorld, pageState.robotName.value, this.#worldChoice.goals, pose);
-    this.#plot.begin();
+    this.#plot.clear();
     this.#shownValues.clear();
     this.#program = program;
-    this.#isAlone = partProgram !== null;
+    this.#isPartRun = partProgram !== null;
     this.#places = partProgram ? [] : program.places; // which are those of another text
     this.#variables = program.variables;
-    this.#stops = judgedRun || replay ? null : new StopOffsets();
-    this.#stops?.update(pageState.breakpoints.value, this.#places);
+    this.#stopOffsets = judgedRun || replay ? null : new StopOffsets();
+    this.#stopOffsets?.update(pageState.breakpoints.value, this.#places);
     this.#remoteWords = judgedRun || replay ? [] : program.remote;
     const worldRequest = judgedRun ?? this.#worldChoice.request;
     const run = this.#newestRun = this.#makeRun(program, worldRequest, replay, partProgram?.text);
     run.isJudged = judgedRun !== null;
-    this.#timeLine.begin(run);
-    const beginning = this.#simulator.begin(program, pageState.robotName.value, worldRequest, this.#stops?.offsets, isPaused, leastSpeed, replay !== null, pose);
-    if (!partProgram && !(judgedRun && isStill())) this.#stage.enlarge(); // it sees nothing of the run before
+    this.#timeLine.setRun(run);
+    const beginning = this.#simulator.begin(program, pageState.robotName.value, worldRequest, this.#stopOffsets?.offsets, isPaused, leastSpeed, replay !== null, pose);
+    if (!partProgram && !(judgedRun && isMotionReduced())) this.#stage.enlarge(); // it sees nothing of the run before
     await beginning;
   }
 
@@ -531,23 +531,23 @@ export class SimulatorPanel {
    * The run that begins, among those that are kept.
    * @param {CheckResult} program
    * @param {unknown} worldRequest
-   * @param {{opened: import('./runs_window.js').OpenedRun, again: Run | null} | null} replay
+   * @param {{openedRun: import('./runs_window.js').OpenedRun, knownRun: Run | null} | null} replay
    * @param {string} [programText] its text
    */
   #makeRun(program, worldRequest, replay, programText = pageState.programText.value) {
-    const run = replay?.again ?? new Run({ of: 'virtual', text: programText, robot: pageState.robotName.value, program: program.program, world: worldRequest }, program, null);
-    if (replay && !replay.again) {
-      run.origin = { ...run.origin, of: replay.opened.of };
-      run.file = replay.opened.file;
+    const run = replay?.knownRun ?? new Run({ of: 'virtual', text: programText, robot: pageState.robotName.value, program: program.program, world: worldRequest }, program, null);
+    if (replay && !replay.knownRun) {
+      run.origin = { ...run.origin, of: replay.openedRun.of };
+      run.fileText = replay.openedRun.fileText;
     }
     run.world = this.#worldChoice.shownWorld;
     run.program = program;
     run.restart();
     if (replay) {
-      run.markKeys(replay.opened.rows);
-      run.fileRows = replay.opened.rows;
+      run.markKeys(replay.openedRun.rows);
+      run.fileRows = replay.openedRun.rows;
     }
-    if (!replay?.again && !this.#isAlone) this.runs.addRun(run);
+    if (!replay?.knownRun && !this.#isPartRun) this.runs.addRun(run);
     return run;
   }
 
@@ -580,7 +580,7 @@ export class SimulatorPanel {
     }
     this.#sounds.silence();
     if (!this.#isDriving) return;
-    this.#lookAtNow();
+    this.#returnToNewest();
     this.#wasStopped = true;
     this.#simulator.stop();
   }
@@ -591,8 +591,8 @@ export class SimulatorPanel {
     this.#showReadings();
     const { dataset } = document.documentElement, isOver = ['running', 'paused'].includes(dataset['phase'] ?? '') && phase === 'ended';
     dataset['phase'] = phase;
-    needStop('run', this.#isDriving);
-    if (isOver) this.#stage.runEnded();
+    setStopNeeded('run', this.#isDriving);
+    if (isOver) this.#stage.onRunEnd();
     this.#offerRemote();
     if (!this.#isDriving) this.#onRunOver();
     this.#markPlaces(); // last: the editor has the page laid out, which is then done once
@@ -601,7 +601,7 @@ export class SimulatorPanel {
   /** A run that reads a remote control can be driven. */
   #offerRemote() {
     const canDrive = this.#isDriving && this.#remoteWords.length > 0;
-    this.#page.pad.offerRobot('driving', canDrive ? { reads: this.#remoteWords, tell: (controls) => { this.#simulator.heldControls = controls; } } : null);
+    this.#page.pad.offerRobot('driving', canDrive ? { remoteWords: this.#remoteWords, sendControls: (controls) => { this.#simulator.heldControls = controls; } } : null);
     if (!canDrive) this.#simulator.heldControls = null;
   }
 
@@ -609,14 +609,14 @@ export class SimulatorPanel {
   #showFrame(state) {
     this.#arena.draw(state);
     if (performance.now() - this.#lastShown_ms < READINGS_INTERVAL_MS / 2) return;
-    if (this.#isReadingNext) this.#showReadings();
+    if (this.#areReadingsNext) this.#showReadings();
     else this.#markPlaces();
   }
 
   #showReadings() {
     const { phase, trace } = this.#simulator, state = this.#shownState;
     this.#lastShown_ms = performance.now();
-    this.#isReadingNext = false;
+    this.#areReadingsNext = false;
     this.#pauseButton.disabled = !this.#isDriving;
     setText(this.#pauseButton, text(phase === 'paused' ? 'go_on' : 'pause'));
     setHidden(this.#pushButton, !state?.is_waiting || phase !== 'running');
@@ -626,9 +626,9 @@ export class SimulatorPanel {
     this.#showScore(state?.score ?? null);
     this.#announcer.announce(state, phase);
     this.#showValues();
-    this.#whyButton.disabled = !this.#timeLine.seenState;
+    this.#whyButton.disabled = !this.#timeLine.pastState;
     this.#whyButton.setAttribute('aria-pressed', String(this.#isWhyAsked));
-    this.#plot.draw(state && this.#timeLine.seenState ? state.now_ms - (state.began_ms ?? state.now_ms) : null);
+    this.#plot.draw(state && this.#timeLine.pastState ? state.now_ms - (state.began_ms ?? state.now_ms) : null);
     this.#timeLine.show();
   }
 
@@ -636,12 +636,12 @@ export class SimulatorPanel {
   #markPlaces() {
     const state = this.#shownState;
     this.#lastShown_ms = performance.now();
-    this.#isReadingNext = true;
+    this.#areReadingsNext = true;
     const range = this.#shownRange();
     const places = this.#shownPlaces;
-    const isAlone = !state || state.fault || state.is_held;
-    const isOver = !this.#isDriving && !this.#timeLine.seenState && !state?.fault; // also of one that was stopped before its end
-    const ranges = isOver ? [] : isAlone ? [range] : state.places.map((offset) => rangeAt(places, offset));
+    const isSingleRange = !state || state.fault || state.is_held;
+    const isOver = !this.#isDriving && !this.#timeLine.pastState && !state?.fault; // also of one that was stopped before its end
+    const ranges = isOver ? [] : isSingleRange ? [range] : state.places.map((offset) => rangeAt(places, offset));
     pageState.virtualRun.set({ ranges: ranges.filter((range) => range !== null), isHeld: Boolean(state?.is_held) });
     pageState.fault.set({ range: state?.fault ? range : null, sentence: state?.fault ? faultSentence(state.fault) : '' });
   }
@@ -656,7 +656,7 @@ export class SimulatorPanel {
   #takeState(state) {
     this.#arena.followState(state);
     this.#newestRun?.add(state);
-    this.runs.trim();
+    this.runs.forgetOldest();
     if (state.bumps > this.#bumpCount) {
       this.#arena.shake();
       this.#sounds.crash();
@@ -672,9 +672,9 @@ export class SimulatorPanel {
     if (state.began_ms === null) return;
     this.#keepShownValues(this.#shownValues, state.events);
     this.#plot.add(state.now_ms - state.began_ms, [
-      ...devicesOf(pageState.robotName.value, 'sensor').map((device, index) => ({ name: deviceName(device), value: numberOfShown(state.readings[index]?.text) })),
+      ...devicesOf(pageState.robotName.value, 'sensor').map((device, index) => ({ name: deviceName(device), value: parseShownValue(state.readings[index]?.text) })),
       ...this.#variables.map(({ name, is_yes_no }, index) => ({ name, value: is_yes_no ? Number(Boolean(state.variables[index])) : state.variables[index] })),
-      ...[...this.#shownValues].map(([name, value]) => ({ name, value: numberOfShown(value) })),
+      ...[...this.#shownValues].map(([name, value]) => ({ name, value: parseShownValue(value) })),
     ]);
   }
 
@@ -687,7 +687,7 @@ export class SimulatorPanel {
     for (const [at_ms, event, offset] of events) {
       if (!event.startsWith('SHOW ')) continue;
       const value = event.slice('SHOW '.length);
-      const program = this.#timeLine.seenState ? this.#timeLine.run.program : this.#program, show = showAt(program, offset);
+      const program = this.#timeLine.pastState ? this.#timeLine.run.program : this.#program, show = findShow(program, offset);
       shownValues.set(show ? shownName(program.shows, show, `SHOW(${show[1]})`, true) : 'SHOW', value);
       this.#arena.showBubble(value, at_ms);
     }
@@ -699,20 +699,20 @@ export class SimulatorPanel {
     if (failure) return failure;
     if (isStopping) return text('robot_stopping');
     const { parting } = this.#timeLine.run;
-    const isAtParting = parting && (this.#timeLine.seenState ? parting.at_ms !== null && Math.abs(this.#timeLine.seenState.now_ms - parting.at_ms) < NEAR_MOMENT_MS : phase === 'ended');
+    const isAtParting = parting && (this.#timeLine.pastState ? parting.at_ms !== null && Math.abs(this.#timeLine.pastState.now_ms - parting.at_ms) < NEAR_MOMENT_MS : phase === 'ended');
     if (parting && isAtParting) return partingText(parting, this.#timeLine.run.origin.text);
-    if (this.#timeLine.seenState) return this.#pastText(this.#timeLine.seenState);
+    if (this.#timeLine.pastState) return this.#pastText(this.#timeLine.pastState);
     if (phase === 'off' || !state) return this.#taskText() || text('robot_off');
     if (state.fault) {
       const faultText = faultSentence(state.fault);
       const range = this.#shownRange();
-      return range ? this.#say('say_fault', 'say_fault_block', { line: range.line, what: faultText }, this.#partText(range)) : text('robot_fault', { what: faultText });
+      return range ? this.#sentenceOf('say_fault', 'say_fault_block', { line: range.line, what: faultText }, this.#partText(range)) : text('robot_fault', { what: faultText });
     }
     if (this.#wasStopped) return text('robot_stopped');
-    const endText = state.score && boutEnd(state.score);
+    const endText = state.score && boutEndText(state.score);
     if (endText) return endText;
     const heldRange = state.is_held && this.#shownRange();
-    if (phase === 'paused' && heldRange) return this.#say('robot_held', 'robot_held_block', { line: heldRange.line }, this.#partText(heldRange));
+    if (phase === 'paused' && heldRange) return this.#sentenceOf('robot_held', 'robot_held_block', { line: heldRange.line }, this.#partText(heldRange));
     if (phase === 'paused') return text('robot_paused');
     const { origin, program } = this.#timeLine.run;
     if (phase === 'ended') return text(program.places.length || origin.text !== pageState.programText.value ? 'robot_ended' : 'program_empty');
@@ -728,7 +728,7 @@ export class SimulatorPanel {
     if (!range) return [text('looked_back', { seconds }), ...reasons].join(' ');
     const part = this.#partText(range), names = new Set(part.toUpperCase().match(/\w+/g));
     const values = this.#valuesOf(state).filter(([name]) => names.has(name)).map(([name, value]) => `${this.#nameOf(name)} ${value}`);
-    return [this.#say('looked_back_at', 'looked_back_block', { seconds, line: range.line, part }, part), ...values, ...reasons].join(' · ');
+    return [this.#sentenceOf('looked_back_at', 'looked_back_block', { seconds, line: range.line, part }, part), ...values, ...reasons].join(' · ');
   }
 
   /** @param {import('../writing/editor.js').Range} range of the program that is seen */
@@ -745,7 +745,7 @@ export class SimulatorPanel {
    * Says something of an instruction: of its block, where that is seen, or else of its line.
    * @param {string} key @param {string} blockKey @param {Record<string, string | number>} values @param {string} code
    */
-  #say(key, blockKey, values, code) {
+  #sentenceOf(key, blockKey, values, code) {
     return pageState.areBlocksNamed.value ? text(textKey(blockKey), { ...values, part: this.#nameOf(code) }) : text(textKey(key), values);
   }
 
@@ -755,17 +755,17 @@ export class SimulatorPanel {
     const offset = state.fault ? state.fault_at : state.at;
     if (offset === null) return text('why_nothing');
     const values = new Map(variables.map(({ name, is_yes_no }, index) => [name, variableText(state.variables[index], is_yes_no)]));
-    const conditions = conditionsAt(run.origin.text, places, offset, (name) => run.readAt(name, state.now_ms) ?? values.get(name));
-    const joiner = new Intl.ListFormat(currentLanguage());
+    const conditions = conditionsAt(run.origin.text, places, offset, (name) => run.readingAt(name, state.now_ms) ?? values.get(name));
+    const listFormat = new Intl.ListFormat(currentLanguage());
     const bumpSentences = this.#arena.isDizzy(state) ? [bumpSentence(state)] : [];
-    const sentences = conditions.flatMap(({ line, condition, values: conditionValues, is: isTrue }) => [
-      this.#say('why_asks', 'why_asks_block', { line, condition }, condition),
-      conditionValues.length ? asSentence(joiner.format(conditionValues.map(([name, value]) => text('why_value', { name: this.#nameOf(name), value })))) : '',
+    const sentences = conditions.flatMap(({ line, condition, values: conditionValues, isTrue }) => [
+      this.#sentenceOf('why_asks', 'why_asks_block', { line, condition }, condition),
+      conditionValues.length ? asSentence(listFormat.format(conditionValues.map(([name, value]) => text('why_value', { name: this.#nameOf(name), value })))) : '',
       isTrue === null ? '' : text(isTrue ? 'why_yes' : 'why_no'),
     ]).filter(Boolean);
     const { driver } = state, tasks = blocksOf(run.origin.text, places, /^(?:TASK|WHEN)\b/i);
-    const task = driver === null ? undefined : tasks.find(({ has: hasOffset }) => hasOffset(driver));
-    if (driver !== null && tasks.length) sentences.push(task ? this.#say('why_task', 'why_task_block', { line: task.line }, run.origin.text.split('\n')[task.line - 1]?.replace(/^.*\|/, '') ?? '') : text('why_main'));
+    const task = driver === null ? undefined : tasks.find(({ hasOffset }) => hasOffset(driver));
+    if (driver !== null && tasks.length) sentences.push(task ? this.#sentenceOf('why_task', 'why_task_block', { line: task.line }, run.origin.text.split('\n')[task.line - 1]?.replace(/^.*\|/, '') ?? '') : text('why_main'));
     return [...bumpSentences, ...sentences].join(' ') || text('why_nothing');
   }
 
@@ -790,15 +790,15 @@ export class SimulatorPanel {
     const scoreElement = element('score', HTMLElement);
     setHidden(scoreElement, !score);
     if (!score) return;
-    const { taken: takenFlags, of: flagCount, pushed: pushedRivals, rivals: rivalCount, points, stars } = score;
-    const parts = [flagCount && `⚑ ${takenFlags}/${flagCount}`, rivalCount && `⇥ ${pushedRivals}/${rivalCount}`].filter(Boolean).join('  ');
+    const { taken: takenFlagCount, of: flagCount, pushed: pushedRivalCount, rivals: rivalCount, points, stars } = score;
+    const parts = [flagCount && `⚑ ${takenFlagCount}/${flagCount}`, rivalCount && `⇥ ${pushedRivalCount}/${rivalCount}`].filter(Boolean).join('  ');
     setText(scoreElement, `${parts}   ${points}   ${starsText(stars)}`);
     scoreElement.classList.toggle('whole', stars > 0);
   }
 
   #showValues() {
     const state = this.#shownState;
-    const readSensors = new Set((this.#timeLine.seenState ? this.#timeLine.run.program : this.#program).sensors);
+    const readSensors = new Set((this.#timeLine.pastState ? this.#timeLine.run.program : this.#program).sensors);
     const sensorRows = devicesOf(this.#shownRobotName, 'sensor').map((device, index) => [deviceName(device), state ? readingText(device, state.readings[index]?.text ?? '') : '–', percentOfRange(device, state?.readings[index]?.value)]);
     const rows = [
       [text('time'), state ? `${secondsOf(state)} s` : '–'],
@@ -806,7 +806,7 @@ export class SimulatorPanel {
       [text('bumps'), state ? String(state.bumps) : '–'],
       ...sensorRows.filter((_, index) => readSensors.has(index)), // first: what the program is about, where there is little room
       ...this.#shownVariables.map(({ name, is_yes_no }, index) => [name, variableText(state?.variables[index], is_yes_no)]),
-      ...(this.#timeLine.seenState ? this.#pastShownValues : this.#shownValues),
+      ...(this.#timeLine.pastState ? this.#pastShownValues : this.#shownValues),
       ...sensorRows.filter((_, index) => !readSensors.has(index)),
     ];
     showRows(element('values', HTMLElement), rows);
@@ -822,7 +822,7 @@ function partingText({ outcome: key, agreed, line, robot, virtual, sensor, began
 }
 
 /** Whether nothing is to move that need not: a run that was judged is seen at its end. */
-function isStill() {
+function isMotionReduced() {
   return matchMedia('(prefers-reduced-motion: reduce)').matches;
 }
 

@@ -3,7 +3,7 @@
 const VOLUME = 0.06;
 const EDGE_S = 0.005; // in which a tone begins and ends: without it, it clicks
 const LATE_S = 0.5; // a tone that would come later is left out: the robot runs faster than it plays
-const OPEN_MS = 3000; // after a sound, until the computer's sound is closed: the page has to wait for it
+const CLOSE_DELAY_MS = 3000; // after a sound, until the computer's sound is closed: the page has to wait for it
 const CHEER_HZ = [523, 659, 784, 1047]; // C E G C
 const CHEER_S = 0.12;
 const LOWEST_HZ = 20;
@@ -57,7 +57,7 @@ export class Sounds {
   }
 
   /** @param {boolean} isMuted */
-  mute(isMuted) {
+  setMuted(isMuted) {
     this.isMuted = isMuted;
     if (isMuted) this.silence();
   }
@@ -104,6 +104,6 @@ export class Sounds {
   /** Closes it after a while: an open one works without a sound, too. @param {AudioContext} context */
   #closeLater(context) {
     clearTimeout(this.#closeTimer);
-    if (!this.#playingTones.size) this.#closeTimer = window.setTimeout(() => context.suspend(), OPEN_MS);
+    if (!this.#playingTones.size) this.#closeTimer = window.setTimeout(() => context.suspend(), CLOSE_DELAY_MS);
   }
 }

@@ -17,7 +17,7 @@ const CAMERA_PATHS = { // of a button
 const FULL_PATH = 'M4 9V4h5M15 4h5v5M20 15v5h-5M9 20H4v-5';
 const TYPING_SELECTOR = 'input, textarea, select, [contenteditable=true], dialog';
 const PEEK_MS = 1500; // for which a phone shows where the robot has come to
-const REST_MS = 200; // after which a mouse rests
+const MOUSE_REST_MS = 200; // after which a mouse rests
 const { documentElement: root } = document;
 
 export class Stage {
@@ -33,7 +33,7 @@ export class Stage {
   #fullButton = makeButton('', () => this.#setFull(!this.isFull), makeSvg('svg', { viewBox: '0 0 24 24', width: 24, height: 24, 'aria-hidden': 'true' },
     makeSvg('path', { d: FULL_PATH, fill: 'none', stroke: 'currentColor', 'stroke-width': 2.6, 'stroke-linecap': 'round', 'stroke-linejoin': 'round' })));
 
-  /** @param {{look: (camera: Camera) => void, stop: () => void}} page shows the robot from there; stops it */
+  /** @param {{setCamera: (camera: Camera) => void, stop: () => void}} page shows the robot from there; stops it */
   constructor(page) {
     this.#page = page;
     this.#cameraButton.id = 'camera';
@@ -56,23 +56,23 @@ export class Stage {
       page.stop();
     });
     // Whoever goes on writing has the room for it again: by keys at once, by a press once it is over, and by a mouse that rests.
-    const writing = element('writing', HTMLElement);
-    let isHeld = false;
-    writing.addEventListener('pointermove', () => this.#awaitRest());
-    writing.addEventListener('pointerdown', () => {
-      isHeld = true;
+    const writingElement = element('writing', HTMLElement);
+    let isPressed = false;
+    writingElement.addEventListener('pointermove', () => this.#awaitRest());
+    writingElement.addEventListener('pointerdown', () => {
+      isPressed = true;
     }, { capture: true });
-    writing.addEventListener('focusin', () => {
-      if (!isHeld) this.shrink();
+    writingElement.addEventListener('focusin', () => {
+      if (!isPressed) this.shrink();
     });
     for (const kind of ['pointerup', 'pointercancel']) addEventListener(kind, () => {
-      if (isHeld) setTimeout(() => this.shrink()); // after what it did to a block
-      isHeld = false;
+      if (isPressed) setTimeout(() => this.shrink()); // after what it did to a block
+      isPressed = false;
     }, { capture: true });
     // Whoever is at a lesson reads on: once a button has been pressed, which else would go from under the finger.
-    const lessons = element('lessons', HTMLElement);
-    lessons.addEventListener('click', () => this.shrink(true));
-    lessons.addEventListener('focusin', ({ target }) => {
+    const lessonsElement = element('lessons', HTMLElement);
+    lessonsElement.addEventListener('click', () => this.shrink(true));
+    lessonsElement.addEventListener('focusin', ({ target }) => {
       if (target instanceof Element && target.matches(':focus-visible')) this.shrink();
     });
     pageState.screen.subscribe((screen) => {
@@ -125,7 +125,7 @@ export class Stage {
   }
 
   /** A run is over: whoever is at a lesson reads on, and whoever has the mouse over the program goes on with it. */
-  runEnded() {
+  onRunEnd() {
     if (pageState.sideId.value === 'side_lessons') this.shrink();
     else this.#awaitRest();
   }
@@ -135,7 +135,7 @@ export class Stage {
     clearTimeout(this.#restTimer);
     this.#restTimer = window.setTimeout(() => {
       if (isMouseOver('#writing') && !isTouched(BLOCK_SELECTOR)) this.shrink();
-    }, REST_MS);
+    }, MOUSE_REST_MS);
   }
 
   /** The program and what is said of it have their room again. @param {boolean} isAsked also while something runs */
@@ -176,6 +176,6 @@ export class Stage {
     this.#cameraButton.title = this.#cameraButton.ariaLabel = text(`camera_${camera}`);
     this.#fullButton.title = this.#fullButton.ariaLabel = `${text('full')} (F)`;
     this.#fullButton.setAttribute('aria-pressed', String(this.isFull));
-    this.#page.look(camera);
+    this.#page.setCamera(camera);
   }
 }

@@ -13,26 +13,26 @@ export class TimeLine {
   /** That is seen. */
   #run = EMPTY_RUN;
   /** Of the robot's time, what is looked at; null: the newest moment. @type {number | null} */
-  #seen_ms = null;
+  #cursor_ms = null;
   #slider = element('time_at', HTMLInputElement);
   #marksCanvas = element('time_marks', HTMLCanvasElement);
-  #onLook;
-  #drawnKey = ''; // of which marks the picture is
-  #size = [0, 0]; // of the canvas, whose layout nobody waits for
+  #onSeek;
+  #drawnMarksKey = ''; // of which marks the picture is
+  #canvasSize = [0, 0]; // of the canvas, whose layout nobody waits for
 
-  /** @param {() => void} onLook another moment is looked at */
-  constructor(onLook) {
-    this.#onLook = onLook;
-    this.#slider.addEventListener('input', () => this.lookAt(Number(this.#slider.value)));
+  /** @param {() => void} onSeek another moment is looked at */
+  constructor(onSeek) {
+    this.#onSeek = onSeek;
+    this.#slider.addEventListener('input', () => this.seek(Number(this.#slider.value)));
     this.#slider.addEventListener('keydown', (event) => {
       const direction = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1 }[event.key];
       if (!direction || event.ctrlKey || event.altKey || event.metaKey) return;
       event.preventDefault();
       const { moments } = this.#run;
-      this.lookAt(moments.at(moments.neighbourOf(this.#seenMoment, direction, event.shiftKey ? moments.parts : moments.events)).now_ms);
+      this.seek(moments.at(moments.neighbourOf(this.#cursorMoment, direction, event.shiftKey ? moments.parts : moments.events)).now_ms);
     });
     new ResizeObserver(() => {
-      this.#size = [this.#marksCanvas.clientWidth, this.#marksCanvas.clientHeight];
+      this.#canvasSize = [this.#marksCanvas.clientWidth, this.#marksCanvas.clientHeight];
       this.#drawMarks();
     }).observe(this.#marksCanvas);
   }
@@ -43,30 +43,30 @@ export class TimeLine {
   }
 
   /** How it was at the moment that is looked at; null: nobody looks back. @returns {RobotState | null} */
-  get seenState() {
-    return this.#seen_ms === null ? null : this.#run.moments.at(this.#seenMoment);
+  get pastState() {
+    return this.#cursor_ms === null ? null : this.#run.moments.at(this.#cursorMoment);
   }
 
   /** What each SHOW had shown last at the moment that is looked at, or has by now; the newest is the last. @returns {RobotState['events']} */
-  get shown() {
-    const { shown = [] } = this.#run.moments.at(this.#seenMoment);
+  get shownEvents() {
+    const { shown = [] } = this.#run.moments.at(this.#cursorMoment);
     return [...shown, ...shown.toSorted(([a_ms], [b_ms]) => a_ms - b_ms)]; // a name keeps the place where it was first
   }
 
-  get #seenMoment() {
-    return this.#run.moments.momentAt(this.#seen_ms ?? Infinity);
+  get #cursorMoment() {
+    return this.#run.moments.momentAt(this.#cursor_ms ?? Infinity);
   }
 
   /** @param {Run} [run] is seen from now on, as it is at its newest moment */
-  begin(run = EMPTY_RUN) {
+  setRun(run = EMPTY_RUN) {
     this.#run = run;
-    this.leave();
+    this.returnToNewest();
     this.show();
   }
 
   /** The newest moment is seen again. */
-  leave() {
-    this.#seen_ms = null;
+  returnToNewest() {
+    this.#cursor_ms = null;
   }
 
   /** Draws what there is. */
@@ -79,7 +79,7 @@ export class TimeLine {
     }
     if (this.#slider.min !== String(first_ms)) this.#slider.min = String(first_ms);
     if (this.#slider.max !== String(last_ms)) this.#slider.max = String(last_ms);
-    const { now_ms, began_ms } = this.#run.moments.at(this.#seenMoment);
+    const { now_ms, began_ms } = this.#run.moments.at(this.#cursorMoment);
     this.#slider.value = String(now_ms);
     const seconds = ((now_ms - (began_ms ?? now_ms)) / 1000).toFixed(1);
     this.#slider.setAttribute('aria-valuetext', `${seconds} s`);
@@ -87,23 +87,23 @@ export class TimeLine {
   }
 
   /** @param {number} at_ms of the robot's time, which is looked at from now on */
-  lookAt(at_ms) {
+  seek(at_ms) {
     if (!this.#run.moments.length) return;
-    this.#seen_ms = at_ms;
-    this.#onLook();
+    this.#cursor_ms = at_ms;
+    this.#onSeek();
   }
 
   #drawMarks() {
     const canvas = this.#marksCanvas;
-    const [width, height] = this.#size;
+    const [width, height] = this.#canvasSize;
     if (!width) return; // it is hidden
     const pen = canvas.getContext('2d');
     if (!pen) return;
     const ratio = window.devicePixelRatio || 1;
     const { moments: { first_ms, last_ms }, marks } = this.#run;
     const marksKey = [this.#run.number, first_ms, last_ms, marks.length, width, height, ratio, document.documentElement.hasAttribute('data-dark')].join();
-    if (marksKey === this.#drawnKey) return;
-    this.#drawnKey = marksKey;
+    if (marksKey === this.#drawnMarksKey) return;
+    this.#drawnMarksKey = marksKey;
     Object.assign(canvas, { width: Math.round(width * ratio), height: Math.round(height * ratio) });
     const pixelsPerMs = (canvas.width - 2 * ratio) / Math.max(1, last_ms - first_ms);
     const style = getComputedStyle(canvas);

@@ -2,7 +2,7 @@
 // the answers, and whose motors they were. Knows no page.
 
 /** @typedef {import('../python.js').CheckResult['places']} Places */
-/** @typedef {{line: number, condition: string, values: [string, string][], is: boolean | null}} Condition `values` of what it names, `is` null: nobody knows */
+/** @typedef {{line: number, condition: string, values: [string, string][], isTrue: boolean | null}} Condition `values` of what it names, `isTrue` null: nobody knows */
 /** @typedef {(name: string) => string | undefined} ValueOf of a sensor or a variable, as it was */
 
 const BLOCK_WORD = /\b(?:IF|WHILE|WHEN|ELSEIF|ELSE|END_?(?:IF|WHILE|WHEN))\b/gi;
@@ -12,7 +12,7 @@ const COMMENT = /\/\/.*/g;
 const TOKEN = /\d+(?:\.\d+)?|[A-Z_]\w*|<>|<=|>=|\S/gi;
 /** @typedef {(left: number, right: number) => number | boolean} Operation */
 /** From what binds least to what binds most; NOT is between AND and the comparisons. @type {Record<string, Operation>[]} */
-const COMPARISONS_AND_SUMS = [
+const BINARY_OPERATIONS = [
   { '=': (a, b) => a === b, '<>': (a, b) => a !== b, '<': (a, b) => a < b, '<=': (a, b) => a <= b, '>': (a, b) => a > b, '>=': (a, b) => a >= b },
   { '+': (a, b) => a + b, '-': (a, b) => a - b },
 ];
@@ -38,14 +38,14 @@ export function conditionsAt(text, places, offset, valueOf) {
   const addCondition = (/** @type {number} */ headOffset, /** @type {boolean | null} */ isTrue) => {
     const condition = bracketContent(plainText, headOffset);
     if (!condition) return;
-    const answer = answerOf(condition, valueOf);
+    const answer = evaluateCondition(condition, valueOf);
     const names = [...new Set(condition.toUpperCase().match(NAME))];
     // Other values than those that it was answered with say nothing of the answer: they were read later.
     const isLater = isTrue !== null && answer !== null && answer !== isTrue;
     const values = isLater ? [] : names.flatMap((name) => { const value = valueOf(name); return value === undefined ? [] : [/** @type {[string, string]} */ ([name, value])]; });
-    conditions.push({ line: plainText.slice(0, headOffset).split('\n').length, condition, values, is: isTrue ?? answer });
+    conditions.push({ line: plainText.slice(0, headOffset).split('\n').length, condition, values, isTrue: isTrue ?? answer });
   };
-  for (const heads of openBlocksAt(plainText, start)) heads.forEach((headOffset, index) => addCondition(headOffset, index === heads.length - 1));
+  for (const headOffsets of openBlocksAt(plainText, start)) headOffsets.forEach((headOffset, index) => addCondition(headOffset, index === headOffsets.length - 1));
   const statement = (lines[line - 1] ?? '').slice(column - 1, endLine > line ? undefined : endColumn - 1);
   if (/^(?:IF|ELSEIF|WHILE|WHEN)\b/i.test(statement)) addCondition(start, null);
   for (const { index } of statement.matchAll(UNTIL_WORD)) addCondition(start + index, null);
@@ -53,63 +53,63 @@ export function conditionsAt(text, places, offset, valueOf) {
 }
 
 /** What values make of a condition, counted in thousandths as the robot does. Null if that is not known: of RANDOM, and of what is rounded. @param {string} condition @param {ValueOf} valueOf @returns {boolean | null} */
-function answerOf(condition, valueOf) {
+function evaluateCondition(condition, valueOf) {
   const tokens = condition.toUpperCase().match(TOKEN) ?? [];
-  const takeToken = (/** @type {string} */ wanted) => tokens[0] === wanted && Boolean(tokens.shift());
+  const acceptToken = (/** @type {string} */ wanted) => tokens[0] === wanted && Boolean(tokens.shift());
   /** @typedef {number | boolean | null} Answer */
   const isTrue = (/** @type {Answer} */ value) => (value === null ? null : Boolean(value));
   /** @returns {Answer} */
-  const readOr = () => {
-    let value = readAnd();
-    while (takeToken('OR')) {
-      const left = isTrue(value), right = isTrue(readAnd());
+  const parseOr = () => {
+    let value = parseAnd();
+    while (acceptToken('OR')) {
+      const left = isTrue(value), right = isTrue(parseAnd());
       value = left || right || (left === null || right === null ? null : false);
     }
     return value;
   };
   /** @returns {Answer} */
-  const readAnd = () => {
-    let value = readNot();
-    while (takeToken('AND')) {
-      const left = isTrue(value), right = isTrue(readNot());
+  const parseAnd = () => {
+    let value = parseNot();
+    while (acceptToken('AND')) {
+      const left = isTrue(value), right = isTrue(parseNot());
       value = left === false || right === false ? false : left === null || right === null ? null : true;
     }
     return value;
   };
   /** @returns {Answer} */
-  const readNot = () => {
-    if (!takeToken('NOT')) return readBinary(0);
-    const value = isTrue(readNot());
+  const parseNot = () => {
+    if (!acceptToken('NOT')) return parseBinary(0);
+    const value = isTrue(parseNot());
     return value === null ? null : !value;
   };
   /** @param {number} level @returns {Answer} */
-  const readBinary = (level) => {
-    const operations = COMPARISONS_AND_SUMS[level];
-    if (!operations) return readOne();
-    let value = readBinary(level + 1);
+  const parseBinary = (level) => {
+    const operations = BINARY_OPERATIONS[level];
+    if (!operations) return parsePrimary();
+    let value = parseBinary(level + 1);
     for (let operation = operations[tokens[0] ?? '']; operation; operation = operations[tokens[0] ?? '']) {
       tokens.shift();
-      const right = readBinary(level + 1);
+      const right = parseBinary(level + 1);
       value = value === null || right === null ? null : operation(Number(value), Number(right));
     }
     return value;
   };
   /** @returns {Answer} */
-  const readOne = () => {
+  const parsePrimary = () => {
     const token = tokens.shift() ?? '';
     if (token === '-') {
-      const value = readOne();
+      const value = parsePrimary();
       return value === null ? null : -value;
     }
     if (token === '(') {
-      const value = readOr();
-      takeToken(')');
+      const value = parseOr();
+      acceptToken(')');
       return value;
     }
-    if (takeToken('(')) {
-      const values = [readOr()];
-      while (takeToken(',')) values.push(readOr());
-      takeToken(')');
+    if (acceptToken('(')) {
+      const values = [parseOr()];
+      while (acceptToken(',')) values.push(parseOr());
+      acceptToken(')');
       return values.includes(null) ? null : FUNCTIONS[token]?.(...values.map(Number)) ?? null;
     }
     const valueText = valueOf(token) ?? token;
@@ -117,7 +117,7 @@ function answerOf(condition, valueOf) {
     const thousandths = Math.round(1000 * Number(valueText));
     return Number.isFinite(thousandths) ? thousandths : null;
   };
-  const answer = readOr();
+  const answer = parseOr();
   return tokens.length ? null : isTrue(answer);
 }
 
@@ -142,7 +142,7 @@ function bracketContent(text, offset) {
   return text.slice(offset + opening[0].length, end - 1).replace(/\s+/g, ' ').trim();
 }
 
-/** @typedef {{line: number, has: (at: number, isBody?: boolean) => boolean}} CodeBlock whether an offset of the code is in it, or in what comes after its head */
+/** @typedef {{line: number, hasOffset: (at: number, isBody?: boolean) => boolean}} CodeBlock whether an offset of the code is in it, or in what comes after its head */
 
 /**
  * The blocks of a program that begin with a word.
@@ -156,7 +156,7 @@ export function blocksOf(text, places, word) {
   const blockPlaces = places.filter(([, line, column]) => word.test((lines[line - 1] ?? '').slice(column - 1)));
   return blockPlaces.map(([, line, column, endLine, endColumn]) => ({
     line,
-    has: (offset, isBody = false) => {
+    hasOffset: (offset, isBody = false) => {
       const place = places.findLast(([from]) => from <= offset);
       if (!place) return false;
       const isHead = line === place[1] && column === place[2];

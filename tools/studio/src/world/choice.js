@@ -20,14 +20,14 @@ import { OWN_WORLD } from '../programs/work.js';
  */
 /**
  * @typedef {object} Page what the page does for who changes a world
- * @property {() => World} world that is seen
- * @property {() => import('./parts.js').Point} robot where it is seen
+ * @property {() => World} getWorld that is seen
+ * @property {() => import('./parts.js').Point} getRobotPlace where it is seen
  * @property {() => boolean} isDriving
  * @property {WorldChoice} worldChoice of it
  * @property {() => void} switchOff the robot is off, and its floor seen in place of curves
- * @property {(world: World, isOther: boolean) => void} put a changed world, or another one, takes the place of the one that is seen
- * @property {(world: World) => void} preview the same, for as long as a finger is down
- * @property {() => void} tell something is to be shown anew
+ * @property {(world: World, isOther: boolean) => void} putWorld a changed world, or another one, takes the place of the one that is seen
+ * @property {(world: World) => void} previewWorld the same, for as long as a finger is down
+ * @property {() => void} refresh something is to be shown anew
  */
 
 const BROUGHT_VALUE = ':brought'; // no name of a shipped world
@@ -52,7 +52,7 @@ export class WorldChoice {
       const { value } = this.#worldSelect;
       if (value.startsWith(EARLIER_PREFIX)) {
         this.#ownWorlds.restoreEarlier(Number(value.slice(EARLIER_PREFIX.length)));
-        this.keepOwn();
+        this.storeOwn();
       }
       if (value !== BROUGHT_VALUE) {
         this.choose(value.startsWith(EARLIER_PREFIX) ? OWN_WORLD : value);
@@ -125,15 +125,15 @@ export class WorldChoice {
   }
 
   /** Keeps this person's worlds on this device. */
-  keepOwn() {
+  storeOwn() {
     return this.#ownWorlds.storeTexts(pageState.robotName.value);
   }
 
   /** Brings this person's worlds back; returns whether the newest can still be read. */
   async restoreOwn() {
-    const isWhole = await this.#ownWorlds.restore();
+    const isNewestRestored = await this.#ownWorlds.restore();
     this.#show();
-    return isWhole;
+    return isNewestRestored;
   }
 
   #show() {

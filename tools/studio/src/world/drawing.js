@@ -2,22 +2,22 @@
 // only by `parts.js`.
 
 import { element } from '../page/elements.js';
-import { bytesOf, download, onFileChosen } from '../page/files.js';
+import { readBytes, downloadText, onFileChosen } from '../page/files.js';
 import { copyAsOwn } from './own.js';
 import { pageState } from '../page/page_state.js';
 import { currentLanguage, textKey, text } from '../page/texts.js';
 import {
-  FLOOR, turnHandleOf, isSamePart, KINDS, withMovedPart, NUMBERS, clampToFloor, partAt, partsOf, pointAt, pointsOf, START, withTurnedHandle, withTurnedPart,
+  FLOOR, turnHandleOf, isSamePart, KINDS, withMovedPart, NUMBERS, clampToFloor, partAt, partsOf, pointIndexAt, pointsOf, START, withTurnedHandle, withTurnedPart,
   valueOf, withDrawnPart, withoutPart, withPoint,
 } from './parts.js';
 import { partName, showNumbers } from './numbers.js';
 
 /** @import { World, Part, PartKind, Point } from './parts.js' */
 /** @typedef {import('./choice.js').Page} Page */
-/** @typedef {{gesture: 'move' | 'draw' | 'turn', part: Part, point: number, start: Point, worldBefore: World, baseWorld: World, track: Point[]}} Drag `baseWorld`: what is moved */
+/** @typedef {{gesture: 'move' | 'draw' | 'turn', part: Part, pointIndex: number, startPoint: Point, worldBefore: World, baseWorld: World, track: Point[]}} Drag `baseWorld`: what is moved */
 
 const STEP_CM = 5;
-const FINE_CM = 1;
+const FINE_STEP_CM = 1;
 const TURN_DEGREES = 15; // degrees
 const MOST_SPOKEN_NUMBERS = 2; // numbers of a part; all are beside it
 const MOST_UNDO_STEPS = 200; // changes that can be undone
@@ -63,7 +63,7 @@ export class WorldDrawing {
       ['done', () => this.#setDrawing(false)],
       ['turn_left', () => this.#turnChosen(TURN_DEGREES)],
       ['turn_right', () => this.#turnChosen(-TURN_DEGREES)],
-      ['point', () => this.#nextPoint()],
+      ['point', () => this.#chooseNextPoint()],
       ['add_point', () => this.#addPoint()],
       ['delete', () => this.#deleteChosen()],
       ['undo', () => this.#undoOrRedo(this.#undoWorlds, this.#redoWorlds)],
@@ -73,7 +73,7 @@ export class WorldDrawing {
     ];
     for (const [name, onClick] of buttons) {
       element(`world_${name}`, HTMLButtonElement).addEventListener('click', () => {
-        if (!this.#giveDragUp() || name !== 'undo') onClick(); // by another finger, of a world that a first one changes
+        if (!this.#cancelDragAndShow() || name !== 'undo') onClick(); // by another finger, of a world that a first one changes
       });
     }
     for (const kind of KINDS) {
@@ -83,14 +83,14 @@ export class WorldDrawing {
       });
     }
     this.#partSelect.addEventListener('change', () => {
-      const part = partsOf(this.#page.world())[this.#partSelect.selectedIndex];
+      const part = partsOf(this.#page.getWorld())[this.#partSelect.selectedIndex];
       if (part) this.#choosePart(part);
     });
     onFileChosen('world_file', (file) => this.#openWorld(file));
     this.#canvas.addEventListener('pointerdown', (event) => this.#onPointerDown(event));
     this.#canvas.addEventListener('pointermove', (event) => this.#onPointerMove(event));
     this.#canvas.addEventListener('pointerup', () => this.#onPointerUp());
-    this.#canvas.addEventListener('pointercancel', () => this.#giveDragUp());
+    this.#canvas.addEventListener('pointercancel', () => this.#cancelDragAndShow());
     this.#canvas.addEventListener('keydown', (event) => this.#onKeyDown(event));
     pageState.language.subscribe(() => {
       if (!this.isDrawing) return;
@@ -100,13 +100,13 @@ export class WorldDrawing {
   }
 
   /** The kept worlds are there: from now on one can be changed. */
-  allow() {
+  enable() {
     this.#drawButton.disabled = false;
   }
 
   /** The seen world is another one than this has made. */
-  forget() {
-    this.letGo();
+  reset() {
+    this.cancelDrag();
     this.#undoWorlds = [];
     this.#redoWorlds = [];
     this.#chosenPart = FLOOR;
@@ -118,7 +118,7 @@ export class WorldDrawing {
 
   /** The floor is seen no more. */
   end() {
-    this.#giveDragUp();
+    this.#cancelDragAndShow();
     if (this.isDrawing) this.#setDrawing(false);
   }
 
@@ -144,7 +144,7 @@ export class WorldDrawing {
     this.#drawnKind = drawnKind;
     for (const kind of KINDS) element(`world_add_${kind}`, HTMLButtonElement).setAttribute('aria-pressed', String(kind === drawnKind));
     if (drawnKind) this.notice = text('world_hint_pen');
-    this.#page.tell();
+    this.#page.refresh();
   }
 
   /** @param {Part} part @param {number} [pointIndex] */
@@ -158,11 +158,11 @@ export class WorldDrawing {
   /** @param {string} notice */
   #setNotice(notice) {
     this.notice = notice;
-    this.#page.tell();
+    this.#page.refresh();
   }
 
   #chosenSentence() {
-    const value = valueOf(this.#page.world(), this.#chosenPart);
+    const value = valueOf(this.#page.getWorld(), this.#chosenPart);
     const point = value.points?.[this.#pointIndex];
     const numbers = point ? `${text('world_point')} ${this.#pointIndex + 1}: ${point.join(', ')}`
       : NUMBERS[this.#chosenPart.kind].slice(0, MOST_SPOKEN_NUMBERS).map(([key]) => `${text(textKey(`world_${key}`))} ${value[key]}`).join(', ');
@@ -170,7 +170,7 @@ export class WorldDrawing {
   }
 
   /** A change that can be undone. @param {World} world */
-  #applyChange(world, worldBefore = this.#page.world()) {
+  #applyChange(world, worldBefore = this.#page.getWorld()) {
     if (JSON.stringify(world) === JSON.stringify(worldBefore)) return;
     const isOwn = this.#page.worldChoice.isOwn;
     this.#undoWorlds.push(isOwn ? worldBefore : copyAsOwn(worldBefore));
@@ -181,7 +181,7 @@ export class WorldDrawing {
 
   /** @param {World} world */
   #putWorld(world) {
-    this.#page.put(world, false);
+    this.#page.putWorld(world, false);
     if (!partsOf(world).some((part) => isSamePart(part, this.#chosenPart))) this.#chosenPart = FLOOR;
     if (this.#pointIndex >= pointsOf(world, this.#chosenPart).length) this.#pointIndex = -1;
     this.notice = this.#chosenSentence();
@@ -192,14 +192,14 @@ export class WorldDrawing {
   /** Keeps the world and asks whether the robot fits; returns its text, or says why it has none. @returns {Promise<string>} */
   async #writeWorld() {
     const writeNumber = ++this.#writeCount;
-    const { text: worldText = '', is_blocked = false, refused: refusalReasons } = await this.#page.worldChoice.write(this.#page.world());
+    const { text: worldText = '', is_blocked = false, refused: refusalReasons } = await this.#page.worldChoice.write(this.#page.getWorld());
     if (refusalReasons) this.#setNotice(refusalReasons.join(' '));
     else if (writeNumber === this.#writeCount) {
       if (is_blocked !== this.#isBlocked) {
         this.#isBlocked = is_blocked;
         this.#setNotice(is_blocked ? text('world_blocked') : this.#chosenSentence());
       }
-      if (!(await this.#page.worldChoice.keepOwn())) this.#setNotice(text('world_not_kept'));
+      if (!(await this.#page.worldChoice.storeOwn())) this.#setNotice(text('world_not_kept'));
     }
     return worldText;
   }
@@ -208,18 +208,18 @@ export class WorldDrawing {
   #undoOrRedo(sourceWorlds, targetWorlds) {
     const world = sourceWorlds.pop();
     if (!world) return;
-    targetWorlds.push(this.#page.world());
+    targetWorlds.push(this.#page.getWorld());
     this.#putWorld(world);
   }
 
   /** @param {number} degrees */
   #turnChosen(degrees) {
-    this.#applyChange(withTurnedPart(this.#page.world(), this.#chosenPart, degrees));
+    this.#applyChange(withTurnedPart(this.#page.getWorld(), this.#chosenPart, degrees));
   }
 
   #deleteChosen() {
     const name = partName(this.#chosenPart);
-    const world = this.#page.world();
+    const world = this.#page.getWorld();
     const worldWithout = withoutPart(world, this.#chosenPart);
     if (partsOf(worldWithout).length === partsOf(world).length) return;
     this.#chosenPart = FLOOR;
@@ -230,7 +230,7 @@ export class WorldDrawing {
   /** @param {PartKind} kind @param {Point[]} track */
   #addPart(kind, track) {
     this.#setDrawnKind('');
-    const world = this.#page.world();
+    const world = this.#page.getWorld();
     const worldWith = withDrawnPart(world, kind, track);
     if (!worldWith) return this.#setNotice(text('world_full'));
     this.#chosenPart = { kind, index: world[kind].length };
@@ -238,15 +238,15 @@ export class WorldDrawing {
     this.#applyChange(worldWith);
   }
 
-  #nextPoint() {
-    const points = valueOf(this.#page.world(), this.#chosenPart).points ?? [];
+  #chooseNextPoint() {
+    const points = valueOf(this.#page.getWorld(), this.#chosenPart).points ?? [];
     this.#choosePart(this.#chosenPart, this.#pointIndex + 1 < points.length ? this.#pointIndex + 1 : -1);
   }
 
   #addPoint() {
-    const addition = withPoint(this.#page.world(), this.#chosenPart, this.#pointIndex);
+    const addition = withPoint(this.#page.getWorld(), this.#chosenPart, this.#pointIndex);
     if (!addition) return;
-    this.#pointIndex = addition.point;
+    this.#pointIndex = addition.pointIndex;
     this.#applyChange(addition.world);
   }
 
@@ -256,15 +256,15 @@ export class WorldDrawing {
     const isUndo = (event.ctrlKey || event.metaKey) && event.key === 'z';
     if (this.#drag && !isUndo) return event.preventDefault();
     if (event.ctrlKey || event.metaKey) {
-      if (isUndo) this.#giveDragUp() || this.#undoOrRedo(this.#undoWorlds, this.#redoWorlds);
+      if (isUndo) this.#cancelDragAndShow() || this.#undoOrRedo(this.#undoWorlds, this.#redoWorlds);
       else if (event.key === 'y' || event.key === 'Z') this.#undoOrRedo(this.#redoWorlds, this.#undoWorlds);
       else return;
     } else if (ARROW_DIRECTIONS[event.key]) {
       const [right = 0, up = 0] = ARROW_DIRECTIONS[event.key] ?? [];
-      const step = event.shiftKey ? FINE_CM : STEP_CM;
-      this.#applyChange(withMovedPart(this.#page.world(), this.#chosenPart, right * step, up * step, this.#pointIndex));
+      const step = event.shiftKey ? FINE_STEP_CM : STEP_CM;
+      this.#applyChange(withMovedPart(this.#page.getWorld(), this.#chosenPart, right * step, up * step, this.#pointIndex));
     } else if (event.key === 'r' || event.key === 'R') this.#turnChosen(event.shiftKey ? -TURN_DEGREES : TURN_DEGREES);
-    else if (event.key === 'p') this.#nextPoint();
+    else if (event.key === 'p') this.#chooseNextPoint();
     else if (event.key === '+') this.#addPoint();
     else if (event.key === 'Delete' || event.key === 'Backspace') this.#deleteChosen();
     else return;
@@ -275,30 +275,30 @@ export class WorldDrawing {
   #onPointerDown(event) {
     if (!event.isPrimary || event.button !== 0 || event.ctrlKey || this.#drag || this.#drawButton.disabled) return;
     const { place: point, reach_cm } = this.#arena.floorAt(event);
-    const worldBefore = this.#page.world();
+    const worldBefore = this.#page.getWorld();
     if (!this.isDrawing) {
-      const [x, y] = this.#page.robot();
+      const [x, y] = this.#page.getRobotPlace();
       if (this.#page.isDriving() || Math.hypot(x - point[0], y - point[1]) > reach_cm) return;
       // Where the robot is taken it also begins, though it has driven away.
       const start = { ...worldBefore.start, x_cm: Math.round(x), y_cm: Math.round(y) };
-      this.#beginDrag(event, { gesture: 'move', part: START, point: -1, start: point, worldBefore, baseWorld: { ...worldBefore, start }, track: [] });
+      this.#beginDrag(event, { gesture: 'move', part: START, pointIndex: -1, startPoint: point, worldBefore, baseWorld: { ...worldBefore, start }, track: [] });
       return;
     }
     this.#canvas.focus();
     if (this.#drawnKind) {
-      this.#beginDrag(event, { gesture: 'draw', part: FLOOR, point: -1, start: point, worldBefore, baseWorld: worldBefore, track: [clampToFloor(point, worldBefore)] });
+      this.#beginDrag(event, { gesture: 'draw', part: FLOOR, pointIndex: -1, startPoint: point, worldBefore, baseWorld: worldBefore, track: [clampToFloor(point, worldBefore)] });
       return;
     }
     const chosenPoints = valueOf(worldBefore, this.#chosenPart).points ?? [];
-    const grabbedPoint = pointAt(chosenPoints, point, reach_cm / 2);
+    const grabbedIndex = pointIndexAt(chosenPoints, point, reach_cm / 2);
     const turnHandle = turnHandleOf(worldBefore, this.#chosenPart);
     if (turnHandle && Math.hypot(turnHandle[0] - point[0], turnHandle[1] - point[1]) < reach_cm / 2) {
-      this.#beginDrag(event, { gesture: 'turn', part: this.#chosenPart, point: -1, start: turnHandle, worldBefore, baseWorld: worldBefore, track: [] });
+      this.#beginDrag(event, { gesture: 'turn', part: this.#chosenPart, pointIndex: -1, startPoint: turnHandle, worldBefore, baseWorld: worldBefore, track: [] });
       return;
     }
-    const part = grabbedPoint >= 0 ? this.#chosenPart : partAt(worldBefore, point, reach_cm);
-    if (part) this.#beginDrag(event, { gesture: 'move', part, point: grabbedPoint, start: point, worldBefore, baseWorld: worldBefore, track: [] });
-    this.#choosePart(part ?? FLOOR, grabbedPoint);
+    const part = grabbedIndex >= 0 ? this.#chosenPart : partAt(worldBefore, point, reach_cm);
+    if (part) this.#beginDrag(event, { gesture: 'move', part, pointIndex: grabbedIndex, startPoint: point, worldBefore, baseWorld: worldBefore, track: [] });
+    this.#choosePart(part ?? FLOOR, grabbedIndex);
   }
 
   /** @param {PointerEvent} event @param {Drag} drag */
@@ -313,28 +313,28 @@ export class WorldDrawing {
     const drag = this.#drag;
     if (!drag || !event.isPrimary) return;
     const { place: point } = this.#arena.floorAt(event);
-    const { worldBefore, baseWorld, start } = drag;
+    const { worldBefore, baseWorld, startPoint } = drag;
     if (drag.gesture === 'draw') {
       drag.track.push(clampToFloor(point, worldBefore));
       this.#arena.setMark({ points: drag.track, pointIndex: -1, handle: null });
-      this.#page.tell();
+      this.#page.refresh();
       return;
     }
     if (drag.gesture === 'turn') {
-      this.#page.preview(withTurnedHandle(baseWorld, drag.part, start, point));
+      this.#page.previewWorld(withTurnedHandle(baseWorld, drag.part, startPoint, point));
       this.#markChosen();
       return;
     }
-    const offset = [Math.round(point[0] - start[0]), Math.round(point[1] - start[1])];
-    if (this.#page.world() === worldBefore && !offset[0] && !offset[1]) return; // not moved yet
-    this.#page.preview(withMovedPart(baseWorld, drag.part, offset[0] ?? 0, offset[1] ?? 0, drag.point));
+    const offset = [Math.round(point[0] - startPoint[0]), Math.round(point[1] - startPoint[1])];
+    if (this.#page.getWorld() === worldBefore && !offset[0] && !offset[1]) return; // not moved yet
+    this.#page.previewWorld(withMovedPart(baseWorld, drag.part, offset[0] ?? 0, offset[1] ?? 0, drag.pointIndex));
     this.#markChosen();
   }
 
   #onPointerUp() {
     const drag = this.#drag;
     if (!drag) return;
-    const world = this.#page.world();
+    const world = this.#page.getWorld();
     this.#drag = null;
     if (drag.gesture === 'draw') {
       if (this.#drawnKind) this.#addPart(this.#drawnKind, drag.track);
@@ -345,16 +345,16 @@ export class WorldDrawing {
   }
 
   /** What a finger moves is again where it was; returns whether there was such a thing. */
-  letGo() {
+  cancelDrag() {
     const drag = this.#drag;
     this.#drag = null;
-    if (drag && drag.gesture !== 'draw') this.#page.preview(drag.worldBefore);
+    if (drag && drag.gesture !== 'draw') this.#page.previewWorld(drag.worldBefore);
     return drag !== null;
   }
 
   /** The same, and it is seen. */
-  #giveDragUp() {
-    const wasDragging = this.letGo();
+  #cancelDragAndShow() {
+    const wasDragging = this.cancelDrag();
     if (wasDragging) this.#showTools();
     return wasDragging;
   }
@@ -364,11 +364,11 @@ export class WorldDrawing {
     const { name } = file;
     let reason = text('unreadable');
     try {
-      const data = await bytesOf(file);
+      const data = await readBytes(file);
       const answer = await this.#python.ask({ do: 'open_world', name, language: currentLanguage() }, data);
       if (answer.world) {
-        this.#page.put(answer.world, true);
-        this.forget();
+        this.#page.putWorld(answer.world, true);
+        this.reset();
         this.#writeWorld();
         this.#setNotice(text('world_opened', { name }));
         return;
@@ -384,20 +384,20 @@ export class WorldDrawing {
     const name = text('world_name');
     const worldText = await this.#writeWorld();
     if (!worldText) return;
-    download(name, worldText);
+    downloadText(name, worldText);
     this.#setNotice([text('saved', { name }), this.#isBlocked && text('world_blocked')].filter(Boolean).join(' '));
   }
 
   #markChosen() {
-    const world = this.#page.world();
+    const world = this.#page.getWorld();
     this.#arena.setMark(this.isDrawing ? { points: pointsOf(world, this.#chosenPart), pointIndex: this.#pointIndex, handle: turnHandleOf(world, this.#chosenPart) } : null);
-    this.#page.tell();
+    this.#page.refresh();
   }
 
   #showTools() {
     this.#markChosen();
     if (this.#drag) return; // other tools would move the floor from under the finger
-    const world = this.#page.world();
+    const world = this.#page.getWorld();
     const { kind } = this.#chosenPart;
     const parts = partsOf(world);
     this.#partSelect.replaceChildren(...parts.map((part) => new Option(partName(part))));

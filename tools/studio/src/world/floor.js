@@ -12,7 +12,7 @@ import { cornersOf } from './parts.js';
 const GRID_CM = 10; // while a world is changed
 const TILE_CM = 25;
 const LAWN_CM = 7; // around a house
-const WALL_CM = 2, WALL_HIGH_CM = 7, BOX_HIGH_CM = 12;
+const WALL_CM = 2, WALL_HEIGHT_CM = 7, BOX_HEIGHT_CM = 12;
 const DASH_CM = 6; // of the white line in the middle of a street
 const NIGHT_PERCENT = 5; // of light, at most, where it is night
 const PAPER_COLOR = '#fffdf6', NIGHT_COLOR = '#27324b';
@@ -24,14 +24,14 @@ const THEMES = { dance: 'tiles', obstacles: 'kitchen', delivery: 'city', ring: '
  * @param {Pen} pen
  * @param {World} world
  * @param {Goal[]} goals where a task leads; one without a radius is part of the world
- * @param {number} takenFlags flags
+ * @param {number} takenFlagCount flags
  * @param {boolean} isEdited now, by a finger
  */
-export function drawWorld(pen, world, goals, takenFlags, isEdited) {
+export function drawWorld(pen, world, goals, takenFlagCount, isEdited) {
   drawTheme(pen, world);
   if (isEdited) drawGrid(pen, world);
   for (const goal of goals) drawGoal(pen, goal);
-  world.flags.forEach((flag, index) => drawFlag(pen, flag, index - takenFlags, index + 1));
+  world.flags.forEach((flag, index) => drawFlag(pen, flag, index - takenFlagCount, index + 1));
   for (const ring of world.rings) drawRing(pen, ring);
   for (const line of world.lines) drawPath(pen, line.points, '#20242a', line.width_cm);
   for (const { x_cm: x, y_cm: y } of world.lamps) {
@@ -53,30 +53,30 @@ export function drawWorld(pen, world, goals, takenFlags, isEdited) {
  * Raises what stands on a floor that is seen from behind a robot: above the middle of the picture is far away.
  * @param {Pen} pen of the picture, in its pixels
  * @param {World} world
- * @param {DOMMatrix} place from the floor, in centimetres, to the picture
+ * @param {DOMMatrix} floorToPicture from the floor, in centimetres, to the picture
  * @param {number} scale pixels of a centimetre
  */
-export function drawSolids(pen, world, place, scale) {
+export function drawSolids(pen, world, floorToPicture, scale) {
   const { width_cm: x, height_cm: y } = world;
   const rows = [...world.walls.map(({ points }) => points), ...world.has_border ? [[[0, 0], [x, 0], [x, y], [0, y], [0, 0]]] : []];
-  const walls = rows.flatMap((points) => points.slice(1).map((to, k) => ({ corners: plank(points[k] ?? to, to), high_cm: WALL_HIGH_CM, top: '#8a6544', side: '#6b4a2f' })));
-  const boxes = world.boxes.map((box) => ({ corners: cornersOf(box), high_cm: BOX_HIGH_CM, top: '#c79a6b', side: '#9c7346' }));
-  const solids = [...walls, ...boxes].map((each) => ({ ...each, base: each.corners.map(([at_x = 0, at_y = 0]) => place.transformPoint({ x: at_x, y: at_y })) }));
-  const lowest = (/** @type {{y: number}[]} */ base) => Math.max(...base.map((each) => each.y));
-  for (const { base, high_cm, top, side } of solids.sort((a, b) => lowest(a.base) - lowest(b.base))) {
-    const high = high_cm * scale, edges = base.map((from, k) => /** @type {const} */ ([from, base[(k + 1) % base.length] ?? from]));
+  const walls = rows.flatMap((points) => points.slice(1).map((to, k) => ({ corners: plankCorners(points[k] ?? to, to), high_cm: WALL_HEIGHT_CM, top: '#8a6544', side: '#6b4a2f' })));
+  const boxes = world.boxes.map((box) => ({ corners: cornersOf(box), high_cm: BOX_HEIGHT_CM, top: '#c79a6b', side: '#9c7346' }));
+  const solids = [...walls, ...boxes].map((each) => ({ ...each, base: each.corners.map(([floorX = 0, floorY = 0]) => floorToPicture.transformPoint({ x: floorX, y: floorY })) }));
+  const lowestY = (/** @type {{y: number}[]} */ base) => Math.max(...base.map((each) => each.y));
+  for (const { base, high_cm, top, side } of solids.sort((a, b) => lowestY(a.base) - lowestY(b.base))) {
+    const height = high_cm * scale, edges = base.map((from, k) => /** @type {const} */ ([from, base[(k + 1) % base.length] ?? from]));
     for (const [from, to] of edges.sort(([a, b], [c, d]) => a.y + b.y - c.y - d.y)) {
-      drawPath(pen, [[from.x, from.y], [to.x, to.y], [to.x, to.y - high], [from.x, from.y - high]], '#5a3d26', 1, side);
+      drawPath(pen, [[from.x, from.y], [to.x, to.y], [to.x, to.y - height], [from.x, from.y - height]], '#5a3d26', 1, side);
     }
-    drawPath(pen, base.map((each) => [each.x, each.y - high]), '#5a3d26', 1, top);
+    drawPath(pen, base.map((each) => [each.x, each.y - height]), '#5a3d26', 1, top);
   }
 }
 
 /** The corners of a wall as thick as it is drawn. @param {number[]} from @param {number[]} to */
-function plank([from_x = 0, from_y = 0], [to_x = 0, to_y = 0]) {
-  const length_cm = Math.hypot(to_x - from_x, to_y - from_y) || 1;
-  const x = (from_y - to_y) / length_cm * WALL_CM / 2, y = (to_x - from_x) / length_cm * WALL_CM / 2;
-  return [[from_x + x, from_y + y], [to_x + x, to_y + y], [to_x - x, to_y - y], [from_x - x, from_y - y]];
+function plankCorners([fromX = 0, fromY = 0], [toX = 0, toY = 0]) {
+  const length_cm = Math.hypot(toX - fromX, toY - fromY) || 1;
+  const x = (fromY - toY) / length_cm * WALL_CM / 2, y = (toX - fromX) / length_cm * WALL_CM / 2;
+  return [[fromX + x, fromY + y], [toX + x, toY + y], [toX - x, toY - y], [fromX - x, fromY - y]];
 }
 
 /** @param {World} world */
@@ -177,11 +177,11 @@ function drawGoal(pen, { x_cm: x, y_cm: y, is_flag, radius_cm, around }) {
  * A flag of the world: taken, the next one, or one of those after it.
  * @param {Pen} pen
  * @param {import('./parts.js').Flag} flag
- * @param {number} order the next one, by so many flags
+ * @param {number} offsetFromNext the next one, by so many flags
  * @param {number} number
  */
-function drawFlag(pen, { x_cm: x, y_cm: y, reach_cm, rests }, order, number) {
-  const isTaken = order < 0, isNext = order === 0;
+function drawFlag(pen, { x_cm: x, y_cm: y, reach_cm, rests }, offsetFromNext, number) {
+  const isTaken = offsetFromNext < 0, isNext = offsetFromNext === 0;
   drawDot(pen, x, y, reach_cm, isTaken ? '#2a9d6f44' : isNext ? '#ffd84d77' : '#c8d2dc66');
   if (!isTaken) pen.setLineDash(rests ? [] : [4, 2.5]);
   pen.strokeStyle = isTaken || isNext ? '#0d6040' : '#66727e';

@@ -2,7 +2,7 @@
 
 import { makeLabel, makeElement } from '../page/made.js';
 import { textKey, text } from '../page/texts.js';
-import { CHOICE_KEYS, NUMBERS, valueOf, withChoice, withNumber } from './parts.js';
+import { TOGGLE_KEYS, NUMBERS, valueOf, withToggle, withNumber } from './parts.js';
 
 /** @import { World, Part } from './parts.js' */
 
@@ -25,12 +25,12 @@ export function showNumbers(container, world, part, onChange) {
     });
     return makeLabel(textKey(`world_${key}`), input);
   });
-  const choiceKey = CHOICE_KEYS[part.kind];
-  if (choiceKey) {
+  const toggleKey = TOGGLE_KEYS[part.kind];
+  if (toggleKey) {
     const input = makeElement('input');
-    Object.assign(input, { type: 'checkbox', checked: value[choiceKey], id: `world_${choiceKey}` });
-    input.addEventListener('change', () => onChange(withChoice(world, part, choiceKey, input.checked)));
-    rows.push(makeLabel(textKey(`world_${choiceKey}`), input));
+    Object.assign(input, { type: 'checkbox', checked: value[toggleKey], id: `world_${toggleKey}` });
+    input.addEventListener('change', () => onChange(withToggle(world, part, toggleKey, input.checked)));
+    rows.push(makeLabel(textKey(`world_${toggleKey}`), input));
   }
   const focusedId = container.contains(document.activeElement) ? document.activeElement?.id : '';
   container.replaceChildren(...rows);

@@ -74,14 +74,14 @@ export class OwnWorlds {
     const { newest: newestText, before: earlierTexts } = loadWorldTexts();
     if (!newestText && !earlierTexts.length) return true;
     await this.#python.ready;
-    const worlds = await Promise.all([newestText, ...earlierTexts].map((text) => this.#readText(text)));
+    const worlds = await Promise.all([newestText, ...earlierTexts].map((text) => this.#readWorld(text)));
     this.newestWorld = worlds[0] ?? null;
     this.earlierWorlds = worlds.slice(1).filter((world) => world !== null).slice(0, MOST_EARLIER);
     return !newestText || this.newestWorld !== null;
   }
 
   /** @param {string} storedText @returns {Promise<World | null>} */
-  async #readText(storedText) {
+  async #readWorld(storedText) {
     if (!storedText) return null;
     const [nameLine, name] = storedText.match(NAME_COMMENT) ?? ['', ''];
     const text = storedText.slice(nameLine.length);

@@ -42,7 +42,7 @@ export const FLOOR = { kind: 'floor', index: 0 };
 export const START = { kind: 'start', index: 0 };
 const LARGEST_CM = WORLD_LIMITS.cm;
 const LEAST_FLOOR_CM = 20;
-const ROBOT_CM = 9; // from its middle: where it is taken
+const ROBOT_RADIUS_CM = 9; // from its middle: where it is taken
 const HANDLE_CM = 10; // from the front of a part to what turns it
 const TURN_STEP_DEGREES = 5; // degrees
 const SMALLEST_CM = 1; // of what is drawn
@@ -66,7 +66,7 @@ export const NUMBERS = {
 };
 
 /** What a kind of part is, or not: its key. @type {Partial<Record<Part['kind'], string>>} */
-export const CHOICE_KEYS = { floor: 'has_border', flags: 'rests' };
+export const TOGGLE_KEYS = { floor: 'has_border', flags: 'rests' };
 
 /** @param {World} world @returns {Part[]} all of its parts */
 export function partsOf(world) {
@@ -117,10 +117,10 @@ export function withMovedPart(world, part, right_cm, up_cm, pointIndex = -1) {
   const points = pointsOf(world, part);
   const movedPoints = pointIndex < 0 ? points : points.slice(pointIndex, pointIndex + 1);
   if (!movedPoints.length) return world;
-  const x_cm = offsetWithin(right_cm, movedPoints.map(([x]) => x), world.width_cm);
-  const y_cm = offsetWithin(up_cm, movedPoints.map(([, y]) => y), world.height_cm);
+  const offsetX_cm = offsetWithin(right_cm, movedPoints.map(([x]) => x), world.width_cm);
+  const offsetY_cm = offsetWithin(up_cm, movedPoints.map(([, y]) => y), world.height_cm);
   /** @param {Point} place @returns {Point} */
-  const shift = ([x, y]) => [roundOnFloor(x + x_cm, world.width_cm), roundOnFloor(y + y_cm, world.height_cm)];
+  const shift = ([x, y]) => [roundOnFloor(x + offsetX_cm, world.width_cm), roundOnFloor(y + offsetY_cm, world.height_cm)];
   const value = valueOf(world, part);
   if (!value.points) {
     const [x_cm, y_cm] = shift([value.x_cm, value.y_cm]);
@@ -152,7 +152,7 @@ export function withTurnedPart(world, part, degrees) {
 
 /** Where a part that has a front is taken to turn it: in front of it, or behind it at the edge. @param {World} world @param {Part} part @returns {Point | null} */
 export function turnHandleOf(world, part) {
-  const { x_cm = 0, y_cm = 0, heading, length_cm = ROBOT_CM * 2 } = valueOf(world, part);
+  const { x_cm = 0, y_cm = 0, heading, length_cm = ROBOT_RADIUS_CM * 2 } = valueOf(world, part);
   if (heading === undefined) return null;
   const distance = length_cm / 2 + HANDLE_CM;
   const [ahead, behind] = [distance, -distance].map((offset) => rotatePoint([x_cm + offset, y_cm], [x_cm, y_cm], heading));
@@ -184,9 +184,9 @@ export function withNumber(world, part, key, number) {
   return withMovedPart(changedWorld, START, ...shiftToFloor(changedWorld));
 }
 
-/** @param {World} world @param {Part} part @param {string} key @param {boolean} isChosen @returns {World} */
-export function withChoice(world, part, key, isChosen) {
-  return withValue(world, part, { ...valueOf(world, part), [key]: isChosen });
+/** @param {World} world @param {Part} part @param {string} key @param {boolean} isOn @returns {World} */
+export function withToggle(world, part, key, isOn) {
+  return withValue(world, part, { ...valueOf(world, part), [key]: isOn });
 }
 
 /** How far the start has to go to be on the floor. @param {World} world @returns {Point} */
@@ -208,9 +208,9 @@ export function withDrawnPart(world, kind, track) {
   const firstPoint = points[0] ?? [roundCm(world.width_cm / 2), roundCm(world.height_cm / 2)];
   const lastPoint = points.at(-1) ?? firstPoint;
   const isTap = points.every(([x, y]) => Math.hypot(x - firstPoint[0], y - firstPoint[1]) < TAP_CM);
-  const center_x = Math.max(halfLength, Math.min(world.width_cm - halfLength, firstPoint[0]));
+  const centerX = Math.max(halfLength, Math.min(world.width_cm - halfLength, firstPoint[0]));
   /** @type {Point[]} */
-  const endPoints = isTap ? [[center_x - halfLength, firstPoint[1]], [center_x + halfLength, firstPoint[1]]] : [firstPoint, lastPoint];
+  const endPoints = isTap ? [[centerX - halfLength, firstPoint[1]], [centerX + halfLength, firstPoint[1]]] : [firstPoint, lastPoint];
   const [width_cm, height_cm] = isTap ? [20, 20]
     : [Math.max(SMALLEST_CM, roundCm(Math.abs(lastPoint[0] - firstPoint[0]))), Math.max(SMALLEST_CM, roundCm(Math.abs(lastPoint[1] - firstPoint[1])))];
   const part = {
@@ -225,7 +225,7 @@ export function withDrawnPart(world, kind, track) {
   return { ...world, [kind]: [...world[kind], part] };
 }
 
-/** Adds a point after a chosen one, or the last. @param {World} world @param {Part} part @param {number} pointIndex @returns {{world: World, point: number} | null} */
+/** Adds a point after a chosen one, or the last. @param {World} world @param {Part} part @param {number} pointIndex @returns {{world: World, pointIndex: number} | null} */
 export function withPoint(world, part, pointIndex) {
   const value = valueOf(world, part);
   if (!value?.points || value.points.length >= WORLD_LIMITS.points) return null;
@@ -238,7 +238,7 @@ export function withPoint(world, part, pointIndex) {
     : [point[0] + (point[0] - previousPoint[0]) / 2, point[1] + (point[1] - previousPoint[1]) / 2];
   /** @type {Point} */
   const pointOnFloor = [Math.max(0, Math.min(world.width_cm, roundCm(newPoint[0]))), Math.max(0, Math.min(world.height_cm, roundCm(newPoint[1])))];
-  return { world: withValue(world, part, { ...value, points: points.toSpliced(index + 1, 0, pointOnFloor) }), point: index + 1 };
+  return { world: withValue(world, part, { ...value, points: points.toSpliced(index + 1, 0, pointOnFloor) }), pointIndex: index + 1 };
 }
 
 /**
@@ -257,7 +257,7 @@ export function partAt(world, point, reach_cm) {
     else if (part.kind === 'rings') distances.push([part, Math.abs(Math.hypot(value.x_cm - point[0], value.y_cm - point[1]) - value.radius_cm + value.edge_cm / 2) - value.edge_cm / 2]);
     else if (part.kind === 'boxes') distances.push([part, distanceFromBox(value, point)]);
     else if (value.points) distances.push([part, distanceFromPath(value.points, point) - (value.width_cm ?? 2) / 2]);
-    else distances.push([part, Math.hypot(value.x_cm - point[0], value.y_cm - point[1]) - (part.kind === 'start' ? ROBOT_CM : part.kind === 'rivals' ? value.width_cm / 2 : 4)]);
+    else distances.push([part, Math.hypot(value.x_cm - point[0], value.y_cm - point[1]) - (part.kind === 'start' ? ROBOT_RADIUS_CM : part.kind === 'rivals' ? value.width_cm / 2 : 4)]);
   }
   const nearParts = distances.map(([part, distance]) => /** @type {[Part, number]} */ ([part, Math.max(0, distance)])).filter(([, distance]) => distance <= reach_cm);
   nearParts.sort(([first, firstDistance], [second, secondDistance]) => firstDistance - secondDistance || KIND_ORDER.indexOf(first.kind) - KIND_ORDER.indexOf(second.kind) || second.index - first.index);
@@ -267,7 +267,7 @@ export function partAt(world, point, reach_cm) {
 const KIND_ORDER = ['start', 'rivals', 'flags', 'lamps', 'walls', 'boxes', 'lines', 'rings'];
 
 /** @param {Point[]} points @param {Point} point @param {number} reach_cm @returns {number} the point that is nearest, or -1 */
-export function pointAt(points, point, reach_cm) {
+export function pointIndexAt(points, point, reach_cm) {
   const distances = points.map(([x, y]) => Math.hypot(x - point[0], y - point[1]));
   const leastDistance = Math.min(...distances);
   return leastDistance <= reach_cm ? distances.indexOf(leastDistance) : -1;
@@ -276,8 +276,8 @@ export function pointAt(points, point, reach_cm) {
 /** How far a place is outside of a box. @param {Box} box @param {Point} point */
 function distanceFromBox(box, point) {
   const [x, y] = rotatePoint(point, [box.x_cm, box.y_cm], -box.heading);
-  const excess_x = Math.abs(x - box.x_cm) - box.length_cm / 2, excess_y = Math.abs(y - box.y_cm) - box.width_cm / 2;
-  return Math.hypot(Math.max(0, excess_x), Math.max(0, excess_y));
+  const excessX = Math.abs(x - box.x_cm) - box.length_cm / 2, excessY = Math.abs(y - box.y_cm) - box.width_cm / 2;
+  return Math.hypot(Math.max(0, excessX), Math.max(0, excessY));
 }
 
 /** @param {Point[]} points @param {Point} point */
@@ -287,9 +287,9 @@ function distanceFromPath(points, point) {
 
 /** @param {Point} from @param {Point} to @param {Point} point */
 function distanceFromSegment([x, y], [toX, toY], point) {
-  const length = (toX - x) ** 2 + (toY - y) ** 2;
-  const share = length ? Math.max(0, Math.min(1, ((point[0] - x) * (toX - x) + (point[1] - y) * (toY - y)) / length)) : 0;
-  return Math.hypot(x + share * (toX - x) - point[0], y + share * (toY - y) - point[1]);
+  const squaredLength = (toX - x) ** 2 + (toY - y) ** 2;
+  const fraction = squaredLength ? Math.max(0, Math.min(1, ((point[0] - x) * (toX - x) + (point[1] - y) * (toY - y)) / squaredLength)) : 0;
+  return Math.hypot(x + fraction * (toX - x) - point[0], y + fraction * (toY - y) - point[1]);
 }
 
 /** Leaves out the points of a finger's way that a line hardly needs. @param {Point[]} track @returns {Point[]} */
@@ -320,9 +320,9 @@ function centerOf(points) {
 }
 
 /** @param {Point} place @param {Point} middle @param {number} degrees @returns {Point} */
-function rotatePoint([x, y], [center_x, center_y], degrees) {
+function rotatePoint([x, y], [centerX, centerY], degrees) {
   const cos = Math.cos((degrees * Math.PI) / 180), sin = Math.sin((degrees * Math.PI) / 180);
-  return [center_x + (x - center_x) * cos - (y - center_y) * sin, center_y + (x - center_x) * sin + (y - center_y) * cos];
+  return [centerX + (x - centerX) * cos - (y - centerY) * sin, centerY + (x - centerX) * sin + (y - centerY) * cos];
 }
 
 /** @param {Point} place @param {World} world */

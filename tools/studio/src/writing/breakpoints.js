@@ -47,7 +47,7 @@ const breakpointField = StateField.define({
 /**
  * The extension. `toggle` is asked with a place of the text, or the beginning of a line in whose
  * margin somebody has pressed.
- * @param {(offset: number, isLine: boolean) => void} toggle
+ * @param {(offset: number, isWholeLine: boolean) => void} toggle
  * @param {() => void} onChange they, or the text they are in
  */
 export function breakpointExtension(toggle, onChange) {
@@ -73,7 +73,7 @@ export function breakpointExtension(toggle, onChange) {
  * A press beside a line; the right button has the menu of the browser, and so has a press with Ctrl on a Mac.
  * @param {BlockInfo} line
  * @param {Event} event
- * @param {(at: number, isLine: boolean) => void} toggle
+ * @param {(offset: number, isWholeLine: boolean) => void} toggle
  */
 export function onMarginPress(line, event, toggle) {
   if (!(event instanceof MouseEvent) || event.button !== 0 || event.ctrlKey) return false;
@@ -89,13 +89,13 @@ export function offsetsIn(state) {
 /**
  * Where the program is to stop; `point` stays the same while its text moves.
  * @param {import('@codemirror/state').EditorState} state
- * @returns {{at: number, point: object}[]}
+ * @returns {{offset: number, point: object}[]}
  */
 export function breakpointsIn(state) {
-  /** @type {{at: number, point: object}[]} */
+  /** @type {{offset: number, point: object}[]} */
   const breakpoints = [];
   state.field(breakpointField).between(0, state.doc.length, (offset, _, point) => {
-    breakpoints.push({ at: offset, point });
+    breakpoints.push({ offset, point });
   });
   return breakpoints;
 }

@@ -4,8 +4,8 @@ import { pageState } from '../page/page_state.js';
 
 /** @typedef {import('../python.js').CheckResult} CheckResult */
 
-const TYPING_MS = 150; // of silence before a text is compiled
-const REPAIR_PAUSE_MS = 300; // after which it is tried what buttons do
+const DEBOUNCE_MS = 150; // of silence before a text is compiled
+const REPAIR_DELAY_MS = 300; // after which it is tried what buttons do
 const { dataset } = document.documentElement;
 
 export class Checker {
@@ -15,7 +15,7 @@ export class Checker {
   #newestCheck = { key: '', answer: null };
   #isReady = false;
   #isBusy = false;
-  #typingTimer = 0;
+  #debounceTimer = 0;
   #repairTimer = 0;
   #answerCount = 0; // of an answer: the same one may be said again
   /** Those who wait for the newest answer. @type {((answer: CheckResult | null) => void)[]} */
@@ -23,15 +23,15 @@ export class Checker {
 
   /**
    * @param {import('../python.js').Python} python
-   * @param {(why: unknown) => void} onFail the compiler cannot say it
+   * @param {(error: unknown) => void} onFail the compiler cannot say it
    */
   constructor(python, onFail) {
     this.#python = python;
     this.#onFail = onFail;
     pageState.programText.subscribe(() => {
       this.#forgetAnswer();
-      clearTimeout(this.#typingTimer);
-      this.#typingTimer = window.setTimeout(() => this.#check(), TYPING_MS);
+      clearTimeout(this.#debounceTimer);
+      this.#debounceTimer = window.setTimeout(() => this.#check(), DEBOUNCE_MS);
     });
     pageState.robotName.subscribe(() => {
       this.#forgetAnswer();
@@ -47,7 +47,7 @@ export class Checker {
   }
 
   /** It is tried again to have a compiler. */
-  markBeginning() {
+  markRetry() {
     dataset['state'] = 'changed';
   }
 
@@ -94,7 +94,7 @@ export class Checker {
         pageState.checkResult.set(answer);
         clearTimeout(this.#repairTimer);
         this.#answerCount += 1;
-        this.#repairTimer = window.setTimeout(() => this.#tryRepairs(answer, this.#answerCount), REPAIR_PAUSE_MS);
+        this.#repairTimer = window.setTimeout(() => this.#tryRepairs(answer, this.#answerCount), REPAIR_DELAY_MS);
       }
       dataset['state'] = 'checked';
       dataset['image'] = answer?.image ?? '';

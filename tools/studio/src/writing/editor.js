@@ -13,7 +13,7 @@ import { breakpointExtension, offsetsIn, breakpointsIn, onMarginPress, setBreakp
 import { highlighting, completionsForRobot, languageOfRobot } from './language.js';
 import { messageWithFix } from './messages.js';
 import { partAt } from './parts.js';
-import { sayOfPlace } from '../blocks/said.js';
+import { sentenceAtPlace } from '../blocks/said.js';
 import { pageState } from '../page/page_state.js';
 import { text, textsOf } from '../page/texts.js';
 
@@ -54,22 +54,22 @@ export class Editor {
   #languageCompartment = new Compartment();
   #historyCompartment = new Compartment();
   #view;
-  /** What takes back what is not typed in a line that is being typed: in a group. @type {((how: 'undo' | 'redo') => void) | null} */
+  /** What takes back what is not typed in a line that is being typed: in a group. @type {((direction: 'undo' | 'redo') => void) | null} */
   #undoHandler = null;
   /** Where parts of the newest text begin; null while it is not compiled. @type {import('./parts.js').Places | null} */
   #places = null;
-  #markedKey = ''; // what runs
+  #runningKey = ''; // what runs
   /** Of what runs. @type {{from: number, to: number}[]} */
   #runningOffsets = [];
   #runningHighlight = 'Highlight' in globalThis ? new Highlight() : null; // a browser of before 2025 may mark nothing
   #heldOffset = -1; // where the program is held, and the editor has been scrolled to
-  /** Hears where blocks stand again. @type {(stand: LayoutText) => void} */
+  /** Hears where blocks stand again. @type {(layout: LayoutText) => void} */
   #onLayout = () => {};
 
   /** @param {HTMLElement} parent */
   constructor(parent) {
-    /** @type {(offset: number, isLine: boolean) => void} */
-    const toggle = (offset, isLine) => this.#toggleAt(offset, isLine);
+    /** @type {(offset: number, isWholeLine: boolean) => void} */
+    const toggle = (offset, isWholeLine) => this.#toggleAt(offset, isWholeLine);
     if (this.#runningHighlight) CSS.highlights.set('running', this.#runningHighlight);
     const root = parent.attachShadow({ mode: 'open' });
     const container = document.createElement('div');
@@ -83,7 +83,7 @@ export class Editor {
           EditorView.updateListener.of((update) => { // before breakpoints are told: they are of another text
             if (update.docChanged) {
               this.#places = null;
-              this.#markedKey = '';
+              this.#runningKey = '';
               this.#runningOffsets = [];
               const changes = update.transactions.filter(({ docChanged }) => docChanged);
               if (!changes.every((transaction) => ['undo', 'redo', 'input.repair'].some((event) => transaction.isUserEvent(event)))) {
@@ -159,14 +159,14 @@ export class Editor {
     return true;
   }
 
-  /** From now on somebody else has what was done before; null: nobody has. @param {((how: 'undo' | 'redo') => void) | null} undoHandler */
+  /** From now on somebody else has what was done before; null: nobody has. @param {((direction: 'undo' | 'redo') => void) | null} undoHandler */
   setUndoHandler(undoHandler) {
     this.#undoHandler = undoHandler;
     this.#view.dispatch({ effects: this.#historyCompartment.reconfigure([]) });
     this.#view.dispatch({ effects: this.#historyCompartment.reconfigure(history()) });
   }
 
-  /** @param {(stand: LayoutText) => void} onLayout is done where an undo or a redo has blocks stand elsewhere */
+  /** @param {(layout: LayoutText) => void} onLayout is done where an undo or a redo has blocks stand elsewhere */
   onLayoutChange(onLayout) {
     this.#onLayout = onLayout;
   }
@@ -183,14 +183,14 @@ export class Editor {
       if (effects.length) this.#view.dispatch({ effects, annotations: isolateHistory.of('full'), userEvent: 'move.blocks' });
       return;
     }
-    let startLength = 0;
-    while (startLength < Math.min(oldText.length, newText.length) && oldText[startLength] === newText[startLength]) startLength += 1;
-    let endLength = 0;
-    while (endLength < Math.min(oldText.length, newText.length) - startLength && oldText.at(-1 - endLength) === newText.at(-1 - endLength)) endLength += 1;
-    this.#view.dispatch({ selection: { anchor: startLength } }); // where an undo goes back to
+    let commonPrefixLength = 0;
+    while (commonPrefixLength < Math.min(oldText.length, newText.length) && oldText[commonPrefixLength] === newText[commonPrefixLength]) commonPrefixLength += 1;
+    let commonSuffixLength = 0;
+    while (commonSuffixLength < Math.min(oldText.length, newText.length) - commonPrefixLength && oldText.at(-1 - commonSuffixLength) === newText.at(-1 - commonSuffixLength)) commonSuffixLength += 1;
+    this.#view.dispatch({ selection: { anchor: commonPrefixLength } }); // where an undo goes back to
     this.#view.dispatch({
       scrollIntoView: true,
-      changes: { from: startLength, to: oldText.length - endLength, insert: newText.slice(startLength, newText.length - endLength) },
+      changes: { from: commonPrefixLength, to: oldText.length - commonSuffixLength, insert: newText.slice(commonPrefixLength, newText.length - commonSuffixLength) },
       effects,
       annotations: isolateHistory.of('full'),
       userEvent: 'input.blocks',
@@ -202,7 +202,7 @@ export class Editor {
    * @param {(finding: Finding) => void} repair
    */
   showFindings(findings, repair) {
-    const marks = findings.map((finding) => ({
+    const diagnostics = findings.map((finding) => ({
       ...this.#offsetsOfRange(finding),
       /** @type {'error' | 'warning'} */
       severity: finding.severity === 'mistake' ? 'error' : 'warning',
@@ -211,11 +211,11 @@ export class Editor {
         return finding.repair?.length ? [{ name: text('repair'), apply: () => repair(finding) }] : [];
       },
     }));
-    this.#view.dispatch(setDiagnostics(this.#view.state, marks));
+    this.#view.dispatch(setDiagnostics(this.#view.state, diagnostics));
   }
 
   get #breakpoints() {
-    return breakpointsIn(this.#view.state).map(({ at: offset, point }) => ({ ...this.#positionAt(offset), point }));
+    return breakpointsIn(this.#view.state).map(({ offset, point }) => ({ ...this.#positionAt(offset), point }));
   }
 
   /** @param {{line: number, column: number}} position the beginning of a part, or of a block */
@@ -225,24 +225,24 @@ export class Editor {
 
   /**
    * @param {number} offset
-   * @param {boolean} isLine of the whole line
+   * @param {boolean} isWholeLine
    */
-  #toggleAt(offset, isLine) {
+  #toggleAt(offset, isWholeLine) {
     const line = this.#view.state.doc.lineAt(offset);
     const offsetsInLine = offsetsIn(this.#view.state).filter((offset) => offset >= line.from && offset <= line.to);
-    if (isLine && offsetsInLine.length) {
+    if (isWholeLine && offsetsInLine.length) {
       setBreakpoints(this.#view, offsetsInLine, false);
       return;
     }
-    const partStart = this.#partAt(offset, isLine);
-    if (partStart === null) pageState.note.set(sayOfPlace('no_breakpoint', 'no_breakpoint_block', this.text, this.#positionAt(offset)));
-    else setBreakpoints(this.#view, [partStart], !offsetsIn(this.#view.state).includes(partStart));
+    const partOffset = this.#partOffsetAt(offset, isWholeLine);
+    if (partOffset === null) pageState.note.set(sentenceAtPlace('no_breakpoint', 'no_breakpoint_block', this.text, this.#positionAt(offset)));
+    else setBreakpoints(this.#view, [partOffset], !offsetsIn(this.#view.state).includes(partOffset));
   }
 
-  /** @param {number} offset @param {boolean} isLine @returns {number | null} */
-  #partAt(offset, isLine) {
+  /** @param {number} offset @param {boolean} isWholeLine @returns {number | null} */
+  #partOffsetAt(offset, isWholeLine) {
     if (this.#places) {
-      const part = partAt(this.#places, this.#positionAt(offset), isLine);
+      const part = partAt(this.#places, this.#positionAt(offset), isWholeLine);
       return part && this.#offsetOf(part.line, part.column);
     }
     const line = this.#view.state.doc.lineAt(offset); // of a text with mistakes: what there is
@@ -279,14 +279,14 @@ export class Editor {
   showRunning(ranges, isHeld = false) {
     const allOffsets = ranges.map((range) => this.#offsetsOfRange(range));
     const [offsets] = allOffsets;
-    const isElsewhere = offsets && isHeld && offsets.from !== this.#heldOffset;
+    const needsScroll = offsets && isHeld && offsets.from !== this.#heldOffset;
     this.#heldOffset = offsets && isHeld ? offsets.from : -1; // also where a changed text has no marks any more
-    const markedKey = allOffsets.length ? JSON.stringify([allOffsets, isHeld]) : '';
-    if (markedKey === this.#markedKey) return;
-    this.#markedKey = markedKey;
+    const runningKey = allOffsets.length ? JSON.stringify([allOffsets, isHeld]) : '';
+    if (runningKey === this.#runningKey) return;
+    this.#runningKey = runningKey;
     this.#runningOffsets = allOffsets.filter(({ from, to }) => from < to);
     this.#markRunning();
-    if (isElsewhere) this.#view.dispatch({ effects: EditorView.scrollIntoView(offsets.from, { y: 'nearest', yMargin: 24 }) });
+    if (needsScroll) this.#view.dispatch({ effects: EditorView.scrollIntoView(offsets.from, { y: 'nearest', yMargin: 24 }) });
   }
 
   /** Marks what runs where it is drawn. A decoration of CodeMirror would have the page laid out anew. */

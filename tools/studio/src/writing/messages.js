@@ -1,7 +1,7 @@
 // The list of messages beneath the editor. Everything of a program is put there as text, never
 // as markup. A screen reader hears the first one.
 
-import { labelAt, labelOfCode, sayAsSeen, sayOfPlace } from '../blocks/said.js';
+import { labelAt, labelOfCode, findingAsSeen, sentenceAtPlace } from '../blocks/said.js';
 import { element, setText } from '../page/elements.js';
 import { makeButton, makeElement } from '../page/made.js';
 import { pageState } from '../page/page_state.js';
@@ -36,7 +36,7 @@ export function showMessages(list, findings, goTo) {
     const programText = pageState.programText.value, placeText = pageState.areBlocksNamed.value ? labelAt(programText, finding) : text('line', { line: finding.line });
     const placeButton = makeButton('', () => goTo(finding), placeText);
     placeButton.className = 'place';
-    placeButton.ariaLabel = sayOfPlace('say_fault', 'say_fault_block', programText, finding, { what: messageWithFix(sayAsSeen(finding)) });
+    placeButton.ariaLabel = sentenceAtPlace('say_fault', 'say_fault_block', programText, finding, { what: messageWithFix(findingAsSeen(finding)) });
     firstMessage ||= placeButton.ariaLabel;
     const row = makeElement('li', '', placeButton, ' ', makeSentence(finding));
     row.className = finding.severity;
@@ -57,19 +57,19 @@ export function showMessages(list, findings, goTo) {
 export function showRepair(list, findingIndex, finding, repair) {
   const repairButton = makeButton('repair', () => repair(finding));
   repairButton.className = 'repair';
-  const { fix } = sayAsSeen(finding);
-  repairButton.setAttribute('aria-label', sayOfPlace('repair_line', 'repair_block', pageState.programText.value, finding, { fix }));
+  const { fix } = findingAsSeen(finding);
+  repairButton.setAttribute('aria-label', sentenceAtPlace('repair_line', 'repair_block', pageState.programText.value, finding, { fix }));
   if (findingIndex < MOST_MESSAGES) list.children[findingIndex]?.append(' ', repairButton);
 }
 
 /** @param {CheckResult} checked @returns {string} */
 export function summaryOf({ findings, bytes, places, loose: looseCount }) {
-  const mistakes = findings.filter((finding) => finding.severity === 'mistake').length;
-  const warnings = findings.length - mistakes;
+  const mistakeCount = findings.filter((finding) => finding.severity === 'mistake').length;
+  const warningCount = findings.length - mistakeCount;
   const parts = [];
-  if (mistakes) parts.push(text('mistakes', { count: mistakes }));
+  if (mistakeCount) parts.push(text('mistakes', { count: mistakeCount }));
   else if (!looseCount) parts.push(!places.length ? text('program_empty') : pageState.areBlocksNamed.value ? text('right_blocks') : text('right', { bytes }));
   if (looseCount) parts.push(text('loose', { count: looseCount }));
-  if (warnings) parts.push(text('warnings', { count: warnings }));
-  return parts.join(mistakes || looseCount ? ', ' : ' ');
+  if (warningCount) parts.push(text('warnings', { count: warningCount }));
+  return parts.join(mistakeCount || looseCount ? ', ' : ' ');
 }

@@ -24,12 +24,12 @@ export function rangeAt(places, codeOffset) {
  * in the same line, or else at the next one.
  * @param {Places} places
  * @param {Place} position
- * @param {boolean} isLine the part that begins first in this line
+ * @param {boolean} isWholeLine the part that begins first in this line
  * @returns {Place | null} the beginning of the part; null after the last line with one
  */
-export function partAt(places, position, isLine) {
+export function partAt(places, position, isWholeLine) {
   const starts = places.map(startOf).sort((first, second) => first.line - second.line || first.column - second.column);
-  const partInLine = isLine ? undefined : starts.findLast((start) => start.line === position.line && start.column <= position.column);
+  const partInLine = isWholeLine ? undefined : starts.findLast((start) => start.line === position.line && start.column <= position.column);
   return partInLine ?? starts.find((start) => start.line >= position.line) ?? null;
 }
 

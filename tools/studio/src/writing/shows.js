@@ -11,7 +11,7 @@ import { text } from '../page/texts.js';
  * @param {number | undefined} codeOffset an offset in its code
  * @returns {Show | undefined} the SHOW there, if it has a name
  */
-export function showAt({ places, shows }, codeOffset = -1) {
+export function findShow({ places, shows }, codeOffset = -1) {
   const placeOffset = places.findLast(([offset]) => offset <= codeOffset)?.[0];
   return shows.find(([offset]) => offset === placeOffset);
 }

@@ -18,14 +18,14 @@ import { isShippedProgram } from '../start/beginnings.js';
  * @property {import('../python.js').Python} python
  * @property {import('./editor.js').Editor} editor
  * @property {import('../programs/work.js').Work} work
- * @property {() => void} remember
+ * @property {() => void} storeCurrentWork
  * @property {(program: string, isAsked: boolean) => Promise<void>} tryAlone on the virtual robot
  * @property {(hertz: number) => void} playTone
  */
 
-const TYPING_MS = 200; // of silence before blocks are made of a text
+const DEBOUNCE_MS = 200; // of silence before blocks are made of a text
 const GROUP_INTERVAL_MS = 300; // between two times that a group hears which block is chosen
-const BUSY_PAUSE_MS = 50; // until a block that is dragged is looked at again
+const BUSY_POLL_MS = 50; // until a block that is dragged is looked at again
 const LEVELS = /** @type {const} */ ([['few', 'level_few'], ['usual', 'level_usual'], ['all', 'level_all']]);
 
 export class Views {
@@ -40,13 +40,13 @@ export class Views {
   #isAwake = false; // blocks may be fetched
   #isRefreshing = false;
   /** @type {Promise<void> | null} */
-  #sending = null;
+  #sendingBlocks = null;
   #isForced = false; // blocks of a text that does not parse, too
   #changeCount = 0; // of blocks that their text does not have yet
-  #shownForm = ''; // what the blocks were when they and the text were the same
+  #shownFormText = ''; // what the blocks were when they and the text were the same
   /** Where they stood then. @type {import('./editor.js').LayoutText} */
   #shownLayout = '';
-  #typingTimer = 0;
+  #debounceTimer = 0;
   #sendTimer = 0;
   /** @type {Finding[]} */
   #findings = [];
@@ -56,21 +56,21 @@ export class Views {
   /** @type {import('../class/together.js').MatePlace[]} */
   #matePlaces = [];
   /** Who edits the program, too. @type {import('../class/together.js').SharedEditor | null} */
-  #group = null;
+  #sharedEditor = null;
   #blocksPane = element('blocks', HTMLElement);
   #noteElement = element('blocks_note', HTMLElement);
   #levelSelect = element('level', HTMLSelectElement);
 
   /** @param {Page} page */
   constructor(page) {
-    const { editor, work, remember } = page;
+    const { editor, work, storeCurrentWork } = page;
     this.#page = page;
     for (const view of /** @type {const} */ (['blocks', 'text'])) {
       element(`view_${view}`, HTMLButtonElement).addEventListener('click', () => this.#chooseView(view));
     }
     this.#levelSelect.addEventListener('change', () => {
       work.level = LEVELS.find(([level]) => level === this.#levelSelect.value)?.[0] ?? 'few';
-      remember();
+      storeCurrentWork();
       this.#setLevel(work.level);
     });
     element('undo', HTMLButtonElement).addEventListener('click', () => this.#undoOrRedo(() => editor.undo()));
@@ -79,7 +79,7 @@ export class Views {
     for (const eventName of ['pointerdown', 'focusin']) {
       this.#blocksPane.addEventListener(eventName, (event) => {
         pageState.isTyped.set(false); // whoever touches blocks reads of blocks
-        if (!this.#isStale() || (this.#group && this.#shownText !== null)) return; // a group has changes by their blocks
+        if (!this.#isStale() || (this.#sharedEditor && this.#shownText !== null)) return; // a group has changes by their blocks
         if (eventName === 'pointerdown') event.stopPropagation();
         this.#refreshBlocks(true);
       }, { capture: true });
@@ -88,7 +88,7 @@ export class Views {
       if (!this.#blocks) return;
       this.#blocks.layoutText = layout;
       this.#shownText = null; // also where the text is the same
-      if (this.#isOn) this.#refreshBlocks(true);
+      if (this.#isBlockView) this.#refreshBlocks(true);
     });
     new ResizeObserver(() => this.#blocks?.resize()).observe(this.#blocksPane);
     new MutationObserver(() => this.#blocks?.resize()).observe(document.documentElement, { attributeFilter: ['data-big'] }); // its groups are narrower then
@@ -96,7 +96,7 @@ export class Views {
     pageState.areWordsShown.subscribe(() => this.#updateLanguage());
     pageState.robotName.subscribe(() => this.#setRobot());
     pageState.taughtBlocks.subscribe(() => this.#offerTaught());
-    pageState.programText.subscribe(() => this.#textChanged());
+    pageState.programText.subscribe(() => this.#onTextChange());
     pageState.checkResult.subscribe((answer) => {
       if (answer) this.#showFindings(answer.findings);
     });
@@ -111,14 +111,14 @@ export class Views {
     this.#showView();
   }
 
-  get #isOn() {
+  get #isBlockView() {
     return this.#page.work.view === 'blocks';
   }
 
   /** Python answers from now on. */
   markReady() {
     this.#isReady = true;
-    if (this.#isOn) this.#refreshBlocks(true);
+    if (this.#isBlockView) this.#refreshBlocks(true);
   }
 
   /** The program is seen from now on. */
@@ -128,19 +128,19 @@ export class Views {
   }
 
   /** Has the file of the blocks fetched before they are seen. */
-  fetchAhead() {
-    if (this.#isOn) import('../blocks/blocks.js');
+  prefetchBlocks() {
+    if (this.#isBlockView) import('../blocks/blocks.js');
   }
 
   /** Offers what lessons have spoken of. The level rises to what the open one needs, and stays there: none takes blocks away. */
   #offerTaught() {
     const taughtBlocks = pageState.taughtBlocks.value;
-    this.#blocks?.setTaught(taughtBlocks);
+    this.#blocks?.setTaughtBlocks(taughtBlocks);
     const levelOrder = LEVELS.map(([level]) => level);
     const leastLevel = this.#blocks?.levelOf(taughtBlocks.needed) ?? 'few';
     if (levelOrder.indexOf(leastLevel) > levelOrder.indexOf(this.#page.work.level)) {
       this.#page.work.level = leastLevel;
-      this.#page.remember();
+      this.#page.storeCurrentWork();
     }
     this.#setLevel(this.#page.work.level);
   }
@@ -163,7 +163,7 @@ export class Views {
   #setRobot() {
     this.#blocks?.setRobot(pageState.robotName.value);
     this.#shownText = null;
-    if (this.#isOn) this.#refreshBlocks(true);
+    if (this.#isBlockView) this.#refreshBlocks(true);
   }
 
   /** Another program comes. */
@@ -172,17 +172,17 @@ export class Views {
   }
 
   /** The text has changed, by whoever did it. */
-  #textChanged() {
+  #onTextChange() {
     this.#findings = []; // those are of the text before
     if (!this.#blocks) return;
     if (!this.#isStale()) {
       this.#markBlocks(); // it has come back
-      if (!this.isBusy && this.#isTouched) this.#blocksChanged(); // a change of theirs had failed to become text
+      if (!this.isBusy && this.#isTouched) this.#onBlocksChange(); // a change of theirs had failed to become text
       return;
     }
     this.#showState();
-    clearTimeout(this.#typingTimer);
-    this.#typingTimer = window.setTimeout(() => this.#refreshBlocks(!this.#page.editor.hasFocus), TYPING_MS);
+    clearTimeout(this.#debounceTimer);
+    this.#debounceTimer = window.setTimeout(() => this.#refreshBlocks(!this.#page.editor.hasFocus), DEBOUNCE_MS);
   }
 
   /** @param {Finding[]} findings of the newest text */
@@ -207,7 +207,7 @@ export class Views {
 
   /** @param {import('./editor.js').Range} finding */
   goTo(finding) {
-    if (this.#isOn && this.#blocks && !this.#isStale()) this.#blocks.goTo(finding);
+    if (this.#isBlockView && this.#blocks && !this.#isStale()) this.#blocks.goTo(finding);
     else this.#page.editor.goTo(finding);
   }
 
@@ -222,7 +222,7 @@ export class Views {
       await this.#fetchingBlocks;
       await this.#sendBlocks();
       this.#refreshBlocks(true);
-      while (this.#isRefreshing) await pause(BUSY_PAUSE_MS);
+      while (this.#isRefreshing) await pause(BUSY_POLL_MS);
       return this.#blocks && !this.#isStale() ? await this.#blocks.makePicture() : null;
     } finally {
       if (view !== 'blocks') this.#chooseView(view);
@@ -232,7 +232,7 @@ export class Views {
   /** @param {'blocks' | 'text'} view */
   #chooseView(view) {
     this.#page.work.view = view;
-    this.#page.remember();
+    this.#page.storeCurrentWork();
     this.#showView();
     this.#blocks?.resize();
     if (view === 'blocks') this.#refreshBlocks(true);
@@ -255,7 +255,7 @@ export class Views {
   async #fetchBlocks() {
     const { Blocks: BlocksClass } = await import('../blocks/blocks.js');
     this.#blocks = new BlocksClass(this.#blocksPane, pageState.robotName.value, this.#page.work.level, {
-      onChange: () => this.#blocksChanged(),
+      onChange: () => this.#onBlocksChange(),
       toggleBreakpoint: (place) => {
         if (!this.#isStale()) this.#page.editor.toggleBreakpoint(place);
       },
@@ -274,14 +274,14 @@ export class Views {
     if (this.#isReady) this.#refreshBlocks(true);
   }
 
-  /** Others edit the program, too: what is done to blocks is theirs, by the blocks. @param {import('../class/together.js').SharedEditor | null} group */
-  join(group) {
-    if (group === this.#group) return;
-    this.#group = group;
+  /** Others edit the program, too: what is done to blocks is theirs, by the blocks. @param {import('../class/together.js').SharedEditor | null} sharedEditor */
+  join(sharedEditor) {
+    if (sharedEditor === this.#sharedEditor) return;
+    this.#sharedEditor = sharedEditor;
     clearInterval(this.#groupTimer);
-    if (group) this.#groupTimer = window.setInterval(() => group.chooseLine(this.#blocks?.focusedLine ?? 0, this.isBusy), GROUP_INTERVAL_MS);
+    if (sharedEditor) this.#groupTimer = window.setInterval(() => sharedEditor.chooseLine(this.#blocks?.focusedLine ?? 0, this.isBusy), GROUP_INTERVAL_MS);
     this.#shownText = null;
-    if (this.#isOn) this.#refreshBlocks(true);
+    if (this.#isBlockView) this.#refreshBlocks(true);
   }
 
   /** @param {import('../class/together.js').MatePlace[]} places where the others of a group are */
@@ -292,7 +292,7 @@ export class Views {
 
   /** Whether a block is in somebody's hand, or one of its fields is open. */
   get isBusy() {
-    return Boolean(this.#blocks?.isBusy || (this.#group && this.#blocks?.isOpen));
+    return Boolean(this.#blocks?.isDragging || (this.#sharedEditor && this.#blocks?.isFieldOpen));
   }
 
   #isStale() {
@@ -305,10 +305,10 @@ export class Views {
     await this.#sendBlocks();
     if (this.isBusy) return; // the next block has been taken meanwhile
     change();
-    if (this.#isOn) this.#refreshBlocks(true);
+    if (this.#isBlockView) this.#refreshBlocks(true);
   }
 
-  #blocksChanged() {
+  #onBlocksChange() {
     this.#changeCount += 1;
     if (this.#shownText === null) return; // those are not the text's
     this.#blocksPane.dataset['state'] = 'changed';
@@ -318,35 +318,35 @@ export class Views {
 
   /** Makes the text of the blocks, unless somebody has changed the text meanwhile. Who comes while it is made waits for that. */
   #sendBlocks() {
-    this.#sending ??= this.#makeText().finally(() => {
-      this.#sending = null;
+    this.#sendingBlocks ??= this.#makeText().finally(() => {
+      this.#sendingBlocks = null;
     });
-    return this.#sending;
+    return this.#sendingBlocks;
   }
 
   async #makeText() {
-    await this.#waitForHand();
+    await this.#waitUntilIdle();
     if (!this.#blocks || this.#shownText === null || !this.#changeCount) return;
     try {
-      if (this.#group) await this.#writeToGroup(this.#group);
+      if (this.#sharedEditor) await this.#writeToGroup(this.#sharedEditor);
       else while (this.#changeCount && !this.#isStale()) {
         this.#changeCount = 0;
         const textBefore = this.#page.editor.text;
         const { form, ids } = this.#blocks.readForm();
         const formText = JSON.stringify(form);
         const layouts = { before: this.#shownLayout, after: this.#blocks.layoutText };
-        if (formText === this.#shownForm) { // a block was only moved about
+        if (formText === this.#shownFormText) { // a block was only moved about
           this.#shownLayout = layouts.after;
           this.#page.editor.replaceByBlocks(textBefore, layouts);
           break;
         }
         const answer = await this.#page.python.ask({ do: 'text', form });
         if (this.#changeCount || this.#page.editor.text !== textBefore) {
-          await this.#waitForHand();
+          await this.#waitUntilIdle();
           continue;
         }
         if (this.#shownText !== null) this.#shownText = answer.text; // else other blocks are made of it
-        this.#shownForm = formText;
+        this.#shownFormText = formText;
         this.#shownLayout = layouts.after;
         this.#blocks.setRanges(ids, answer.places);
         this.#page.editor.replaceByBlocks(answer.text, layouts);
@@ -361,31 +361,31 @@ export class Views {
     else this.#showState();
   }
 
-  /** Has a group take what was done to blocks since they were shown. @param {import('../class/together.js').SharedEditor} group */
-  async #writeToGroup(group) {
-    while (this.#blocks && group === this.#group) {
+  /** Has a group take what was done to blocks since they were shown. @param {import('../class/together.js').SharedEditor} sharedEditor */
+  async #writeToGroup(sharedEditor) {
+    while (this.#blocks && sharedEditor === this.#sharedEditor) {
       this.#changeCount = 0;
       const { form, ids } = this.#blocks.readForm();
       const formText = JSON.stringify(form);
       const layouts = { before: this.#shownLayout, after: this.#blocks.layoutText };
       this.#shownLayout = layouts.after;
-      if (formText === this.#shownForm) { // which is no change of the group's
+      if (formText === this.#shownFormText) { // which is no change of the group's
         this.#page.editor.replaceByBlocks(this.#page.editor.text, layouts);
         return;
       }
-      this.#shownForm = formText;
-      const answer = await group.writeBlocks(form, ids);
+      this.#shownFormText = formText;
+      const answer = await sharedEditor.writeBlocks(form, ids);
       if (!answer) return;
       this.#shownText = answer.is_shown ? this.#page.editor.text : answer.text ?? null; // blocks with what was refused are stale, also where the text is as before
       if (!answer.is_shown) return;
       this.#blocks.setRanges(ids, answer.places ?? []);
       this.#markBlocks();
-      await this.#waitForHand();
+      await this.#waitUntilIdle();
     }
   }
 
-  async #waitForHand() {
-    while (this.isBusy) await pause(BUSY_PAUSE_MS);
+  async #waitUntilIdle() {
+    while (this.isBusy) await pause(BUSY_POLL_MS);
   }
 
   /**
@@ -395,21 +395,21 @@ export class Views {
    */
   async #refreshBlocks(isForced) {
     this.#isForced ||= isForced;
-    if (!this.#blocks || !this.#isReady || this.#isRefreshing || !this.#isOn) return;
+    if (!this.#blocks || !this.#isReady || this.#isRefreshing || !this.#isBlockView) return;
     this.#isRefreshing = true;
     try {
       while (this.#isStale()) {
-        const group = this.#group;
-        if (group) {
+        const sharedEditor = this.#sharedEditor;
+        if (sharedEditor) {
           await this.#settle();
           if (!this.#isStale()) break;
         }
         const newText = this.#page.editor.text, robotName = pageState.robotName.value;
         /** @type {Form & {size: number}} */
         const form = await this.#page.python.ask({ do: 'blocks', robot: robotName }, new TextEncoder().encode(newText));
-        await this.#waitForHand();
-        if (newText !== this.#page.editor.text || robotName !== pageState.robotName.value || group !== this.#group || (group && (this.#sending || this.#isTouched))) continue;
-        const areBlocksKept = !this.#isForced && this.#page.editor.hasFocus && this.#shownText !== null && hasGrey(form);
+        await this.#waitUntilIdle();
+        if (newText !== this.#page.editor.text || robotName !== pageState.robotName.value || sharedEditor !== this.#sharedEditor || (sharedEditor && (this.#sendingBlocks || this.#isTouched))) continue;
+        const areBlocksKept = !this.#isForced && this.#page.editor.hasFocus && this.#shownText !== null && hasGreyBlock(form);
         if (!form.body || areBlocksKept) {
           this.#showState(form.body ? text('blocks_wait') : text('blocks_many'));
           return;
@@ -419,9 +419,9 @@ export class Views {
         this.#changeCount = 0;
         this.#blocks.setGivenBlocks(isShippedProgram(newText) ? form : null);
         this.#blocks.show(form);
-        this.#shownForm = JSON.stringify(this.#blocks.readForm().form);
+        this.#shownFormText = JSON.stringify(this.#blocks.readForm().form);
         this.#shownLayout = this.#blocks.layoutText;
-        if (group && !(await group.reportBlocks(this.#blocks.lines)).is_known) this.#shownText = null;
+        if (sharedEditor && !(await sharedEditor.reportBlocks(this.#blocks.lines)).is_known) this.#shownText = null;
       }
       this.#decorateBlocks();
       if (!this.#changeCount) this.#showState();
@@ -435,20 +435,20 @@ export class Views {
 
   /** Whether blocks are others than they were shown. */
   get #isTouched() {
-    return this.#shownText !== null && JSON.stringify(this.#blocks?.readForm().form) !== this.#shownForm;
+    return this.#shownText !== null && JSON.stringify(this.#blocks?.readForm().form) !== this.#shownFormText;
   }
 
   /** In a group: what was done to blocks is in the text before others are made of it, and Python has that text. */
   async #settle() {
     do {
-      await this.#waitForHand();
-      await this.#sending;
+      await this.#waitUntilIdle();
+      await this.#sendingBlocks;
     } while (this.isBusy);
     if (this.#isTouched) {
       this.#changeCount ||= 1; // Blockly reports it a moment later
       await this.#sendBlocks();
     }
-    await this.#group?.settle();
+    await this.#sharedEditor?.settle();
   }
 
   /** Blocks that are new have nothing at them yet. */
@@ -478,7 +478,7 @@ export class Views {
 }
 
 /** @param {Form} form */
-function hasGrey(form) {
+function hasGreyBlock(form) {
   const pendingBlocks = [...(form.body ?? [])];
   for (let block = pendingBlocks.pop(); block; block = pendingBlocks.pop()) {
     if (block.kind === 'grey') return true;

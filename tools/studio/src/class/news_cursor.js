@@ -3,7 +3,7 @@
 
 /** @typedef {import('../robot/panel.js').GroupRobotEvent} GroupRobotEvent */
 
-export class HeardNews {
+export class NewsCursor {
   #key = '';
   #version = 0; // of who is here, and where: that of the newest answer, which is what the page shows
   #runNumber = 0; // of the newest event of the group's robot
