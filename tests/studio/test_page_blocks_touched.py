@@ -170,7 +170,7 @@ def test_a_phone_shows_the_robot_in_a_corner_while_a_block_is_tried(pages: Pages
         assert page.locator("#arena").is_visible()
         assert page.locator("#side button:visible, #side select:visible").count() == 0
         assert box_of(block(page, "forward")) == box_before
-        box = page.locator("#side").bounding_box()
+        box = page.locator("#driving").bounding_box()
         assert box is not None
         assert page.evaluate(
             "([x, y]) => document.elementFromPoint(x, y).closest('#blocks') !== null",
