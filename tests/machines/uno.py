@@ -23,13 +23,13 @@ def skip_unless_available() -> None:
 def build_uno(name: str, **constants: int) -> Path:
     """Return `tests/uno/NAME.cpp` as an ELF file, with these constants in it."""
     skip_unless_available()
-    given_words = [f"-Dk{constant}={value}L" for constant, value in constants.items()]
+    define_flags = [f"-Dk{constant}={value}L" for constant, value in constants.items()]
     source = SOURCES / f"{name}.cpp"
     flags = (
         f"-mmcu={COMPILER_ARGUMENTS[UNO][0]}",
         *FLAGS,
         *WARNINGS,
         "-DF_CPU=16000000L",
-        *given_words,
+        *define_flags,
     )
     return compile_sources(source.name, flags, [str(source)], [source.read_bytes()])
