@@ -53,8 +53,8 @@ def missing(package: Path) -> list[str]:
 
 def is_made_into_texts(path: Path) -> bool:
     """Return whether a package has a file of a language in another form."""
-    of_language = path.parent.parent.name == "languages"
-    return of_language and (path.suffix == ".toml" or path.name == "seen.txt")
+    is_of_language = path.parent.parent.name == "languages"
+    return is_of_language and (path.suffix == ".toml" or path.name == "seen.txt")
 
 
 def build_page() -> None:

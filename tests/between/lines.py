@@ -66,8 +66,8 @@ FAULTS = (
 class Way:
     """Bytes on their way."""
 
-    def __init__(self, fault: Fault, is_held: bool, chance: Random) -> None:
-        self._fault, self._is_held, self._chance = fault, is_held, chance
+    def __init__(self, fault: Fault, is_held: bool, rng: Random) -> None:
+        self._fault, self._is_held, self._rng = fault, is_held, rng
         self._under_way: deque[tuple[float, int]] = deque()  # arrival time of each byte
         self._free_ms = 0.0
         self.held_ms = (-1, -1)  # start and end of the time in which bytes are held back
@@ -78,7 +78,7 @@ class Way:
         for byte in data:
             if self._fault.rate:
                 self._free_ms = max(self._free_ms, now_ms) + 1000 / self._fault.rate
-            if is_lost or self._chance.random() < self._fault.lost:
+            if is_lost or self._rng.random() < self._fault.lost:
                 continue
             at_ms = max(self._free_ms, now_ms) + self._fault.late_ms
             if self._is_held and begin_ms <= at_ms < end_ms:
@@ -98,14 +98,14 @@ class BehindBadLine(PtyRobot):
     `mend` takes the fault away; what is still on its way arrives then.
     """
 
-    def _open_line(self, fault: Fault, chance: Random, after: int) -> None:
+    def _open_line(self, fault: Fault, rng: Random, after: int) -> None:
         """Lay the line, before the robot begins."""
         self.fault = fault
         self.has_begun = False
         self._after = after
         self._line_ms = 0
-        self._chance = chance
-        self._ways = [Way(fault, is_held, chance) for is_held in fault.ways]
+        self._rng = rng
+        self._ways = [Way(fault, is_held, rng) for is_held in fault.ways]
         self._is_mended = False
         self._since_ms: int | None = None  # the first byte
 
@@ -114,7 +114,7 @@ class BehindBadLine(PtyRobot):
         with self._lock:
             self.fault, self.has_begun, self._is_mended = fault, False, False
             self._after, self._since_ms = after, self._line_ms
-            self._ways = [Way(fault, is_held, self._chance) for is_held in fault.ways]
+            self._ways = [Way(fault, is_held, self._rng) for is_held in fault.ways]
 
     @property
     def is_used(self) -> bool:
@@ -125,7 +125,7 @@ class BehindBadLine(PtyRobot):
         with self._lock:
             self._is_mended = True
 
-    def pass_ms(self, milliseconds: int, data: bytes = b"") -> bytes:
+    def advance_ms(self, milliseconds: int, data: bytes = b"") -> bytes:
         self._line_ms += milliseconds
         self._begin(len(data))
         to_robot, to_computer = self._ways
@@ -134,7 +134,7 @@ class BehindBadLine(PtyRobot):
             to_robot.held_ms = to_computer.held_ms = (-1, -1)
         to_robot.put(data, self._line_ms)
         arrived_bytes = to_robot.take_arrived(FOREVER_MS if self._is_mended else self._line_ms)
-        to_computer.put(super().pass_ms(milliseconds, arrived_bytes), self._line_ms)
+        to_computer.put(super().advance_ms(milliseconds, arrived_bytes), self._line_ms)
         return to_computer.take_arrived(FOREVER_MS if self._is_mended else self._line_ms)
 
     def _begin(self, count: int) -> None:
@@ -159,16 +159,14 @@ class BehindBadLine(PtyRobot):
 class BadLine(BehindBadLine):
     """A bad line to an Uno."""
 
-    def __init__(
-        self, fault: Fault, chance: Random, after: int, memory: bytes = EMPTY_EEPROM
-    ) -> None:
-        self._open_line(fault, chance, after)
+    def __init__(self, fault: Fault, rng: Random, after: int, memory: bytes = EMPTY_EEPROM) -> None:
+        self._open_line(fault, rng, after)
         super().__init__(KIT, memory)
 
 
 class BadEsp32Line(BehindBadLine, Esp32PtyRobot):
     """A bad line to an ESP32."""
 
-    def __init__(self, fault: Fault, chance: Random, after: int) -> None:
-        self._open_line(fault, chance, after)
+    def __init__(self, fault: Fault, rng: Random, after: int) -> None:
+        self._open_line(fault, rng, after)
         super().__init__(ESP32)

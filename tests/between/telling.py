@@ -125,11 +125,11 @@ class Teller(Terminal):
         parts = re.findall(r"([^\r\n]+)(\r*\n|\r|$)", self.text)
         words = [(text.strip(), end) for text, end in parts
                  if text.strip() and not text.strip().startswith(ROBOT)]  # fmt: skip
-        awaited = [word for (word, end), (after, _) in pairwise(words)
+        announced_waits = [word for (word, end), (after, _) in pairwise(words)
                    if word == after and end.endswith("\n")]  # fmt: skip
         own_lines = [line for line in self.shown_lines if not line.startswith((ADVICE, ROBOT))]
         others = [line for line in own_lines if not STANDING.search(line)]
-        return sorted({*awaited, *(line for line in others if others.count(line) > 1)})
+        return sorted({*announced_waits, *(line for line in others if others.count(line) > 1)})
 
     def longest_silence_s(self) -> float:
         """Return the longest silence, except during announced waits.

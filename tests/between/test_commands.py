@@ -111,7 +111,7 @@ class TriedCommand(NamedTuple):
     name: str
     fault: str
     silence_s: float
-    took_s: float  # time to its end, counted from Ctrl-C if it stays
+    duration_s: float  # time to its end, counted from Ctrl-C if it stays
     wrong: tuple[str, ...]
     output: str
 
@@ -130,19 +130,19 @@ def with_program() -> bytes:
 
 def try_command(words: Words, fault: Fault, seed: int) -> TriedCommand:
     """Run a command on a line with a fault, then another one on the repaired line."""
-    chance = Random(f"{words.name} {fault.name} {seed}")
+    rng = Random(f"{words.name} {fault.name} {seed}")
     with ExitStack() as stack:
         folder = stack.enter_context(tempfile.TemporaryDirectory())
         env = own_folders(folder)
-        choice_after = chance.choice((0, 1, 12, 30, 60, 150))
-        line = _make_line(words, fault, chance, choice_after)
+        choice_after = rng.choice((0, 1, 12, 30, 60, 150))
+        line = _make_line(words, fault, rng, choice_after)
         stack.callback(line.clear_away)
         holder = _start_holder(line, env, stack) if words.is_client else None
         teller = Teller([*words.words, *words.robot, "--port", line.port], env)
         stack.callback(teller.end)
         if holder is not None:
             line.begin(fault, choice_after)
-        has_ended = _play_fault(teller, line, words, chance, holder)
+        has_ended = _play_fault(teller, line, words, rng, holder)
         faults = [] if has_ended else ["it has no end"]
         if not has_ended:
             teller.process.kill()
@@ -150,17 +150,17 @@ def try_command(words: Words, fault: Fault, seed: int) -> TriedCommand:
         faults += _contradictions(teller, line, words)
         if fault.has_end or not fault.pulls:
             faults += _next_try(line, env, words)
-        asked_s = [at_s for at_s, text in teller.timed_output if not text]
-        began_s = asked_s[0] if asked_s else teller.began_s
+        prompt_times_s = [at_s for at_s, text in teller.timed_output if not text]
+        began_s = prompt_times_s[0] if prompt_times_s else teller.began_s
         assert teller.ended_s is not None
         return TriedCommand(words.name, fault.name, teller.longest_silence_s(),
                      teller.ended_s - began_s, tuple(faults), teller.text)  # fmt: skip
 
 
-def _make_line(words: Words, fault: Fault, chance: Random, after: int) -> BehindBadLine:
+def _make_line(words: Words, fault: Fault, rng: Random, after: int) -> BehindBadLine:
     if words.robot:
-        return BadEsp32Line(fault, chance, after)
-    return BadLine(Fault("nothing") if words.is_client else fault, chance, after, with_program())
+        return BadEsp32Line(fault, rng, after)
+    return BadLine(Fault("nothing") if words.is_client else fault, rng, after, with_program())
 
 
 def _start_holder(line: BehindBadLine, env: dict[str, str], stack: ExitStack) -> Teller:
@@ -175,7 +175,7 @@ def _start_holder(line: BehindBadLine, env: dict[str, str], stack: ExitStack) ->
 
 
 def _play_fault(
-    teller: Teller, line: BehindBadLine, words: Words, chance: Random, holder: Teller | None
+    teller: Teller, line: BehindBadLine, words: Words, rng: Random, holder: Teller | None
 ) -> bool:
     """Apply the fault with a person present; return whether the command has ended. If there are two
     commands, the holder of the port is suspended.
@@ -186,7 +186,7 @@ def _play_fault(
         LONGEST_SLOW_END_S if is_slow else LONGEST_END_S + fault.held_ms % 10**9 / 1000
     ) + words.takes_s
     end_s = CLOCK.now_s + timeout_s
-    leaves_s = chance.choice((1.0, 6.0, 15.0)) if words.stays else timeout_s
+    leaves_s = rng.choice((1.0, 6.0, 15.0)) if words.stays else timeout_s
     has_begun = teller.has_socket if words.is_client else lambda: line.is_used
     while not has_begun() and teller.ended_s is None and CLOCK.now_s < end_s:
         CLOCK.wait(0.01)
@@ -241,8 +241,11 @@ def _next_try(line: BehindBadLine, env: dict[str, str], words: Words) -> list[st
 
 
 def list_faults(command: TriedCommand, room_s: float = TOLERANCE_S) -> list[str]:
-    silent = command.silence_s > LONGEST_SILENCE_S + room_s
-    return [*command.wrong, *([f"silent for {command.silence_s:.1f} s"] if silent else [])]
+    was_silent_too_long = command.silence_s > LONGEST_SILENCE_S + room_s
+    return [
+        *command.wrong,
+        *([f"silent for {command.silence_s:.1f} s"] if was_silent_too_long else []),
+    ]
 
 
 def try_all(rows: Sequence[tuple[Words, Fault, int]]) -> list[TriedCommand]:
@@ -260,10 +263,10 @@ def print_table(commands: Sequence[TriedCommand]) -> None:
     for command in ALL_COMMANDS:
         if tried_commands := rows[command.name]:
             quiet = max(tried_commands, key=lambda tried_command: tried_command.silence_s)
-            slowest = max(tried_commands, key=lambda tried_command: tried_command.took_s)
+            slowest = max(tried_commands, key=lambda tried_command: tried_command.duration_s)
             print(f"| `{command.name}` | {len(tried_commands)} |"
                   f" {quiet.silence_s:.1f} ({quiet.fault}) |"
-                  f" {slowest.took_s:.1f} ({slowest.fault}) |")  # fmt: skip
+                  f" {slowest.duration_s:.1f} ({slowest.fault}) |")  # fmt: skip
 
 
 def draw_cases(
@@ -274,8 +277,8 @@ def draw_cases(
                 for fault in FAULTS for words in among]  # fmt: skip
     rows = []
     for k in range(seed, seed + count):
-        chance = Random(k)
-        rows.append((chance.choice(among), chance.choice(FAULTS), k))
+        rng = Random(k)
+        rows.append((rng.choice(among), rng.choice(FAULTS), k))
     return rows
 
 

@@ -260,7 +260,7 @@ def test_the_spec_has_a_whole_image() -> None:
 def test_a_reader_made_from_the_specification_gives_the_same_reasons() -> None:
     """The inputs are random bytes and changed images, half of them with a correct checksum."""
     rng = random.Random("images")
-    met = set()
+    found_reasons = set()
     for _ in range(20_000):
         begun_bytes = b"TS\2\0" + rng.randbytes(20)
         data = bytearray(
@@ -277,10 +277,10 @@ def test_a_reader_made_from_the_specification_gives_the_same_reasons() -> None:
         if len(image) >= HEADER_BYTES and rng.randrange(2):
             image = with_checksum(image)
         expected = second_reader.refusal(image)
-        met.add(expected)
+        found_reasons.add(expected)
         assert expected == (refusal(image) if expected else "")
         if not expected:
             parsed, unpacked = second_reader.IMAGE.parse(image), unpack(image)
             assert (parsed.later, parsed.code) == (unpacked.later_fields, unpacked.code)
             assert (parsed.devices, parsed.checksum) == (unpacked.devices, unpacked.checksum)
-    assert met == {*REFUSALS, ""} - {"OTHER_KIT"}
+    assert found_reasons == {*REFUSALS, ""} - {"OTHER_KIT"}

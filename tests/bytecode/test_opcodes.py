@@ -94,7 +94,7 @@ def effect_of(op: Op, value: int) -> tuple[int, str]:
     return len(task.stack), machine.fault
 
 
-def test_stack_effects() -> None:
+def test_stack_effects_are_those_of_the_table() -> None:
     for op in OPS:
         for value in (0, 1):
             results = op.pushes

@@ -53,7 +53,7 @@ def result_of(name: str) -> Result:
 def test_a_campaign_resumes_where_it_stopped(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    interrupted_after(monkeypatch, 1)
+    interrupt_after(monkeypatch, 1)
     assert campaign.main(["done"]) == 2
     assert (result_of("done").done, result_of("done").seed, result_of("done").next_seed) == (
         10,
@@ -80,7 +80,7 @@ def test_a_campaign_resumes_where_it_stopped(
     assert results.rows()[1][3] == "not run yet"
 
 
-def interrupted_after(monkeypatch: pytest.MonkeyPatch, pieces: int) -> None:
+def interrupt_after(monkeypatch: pytest.MonkeyPatch, pieces: int) -> None:
     """Raise Ctrl-C once, after so many pieces."""
     piece, pieces_left = campaign.run_piece, [pieces]
 
@@ -102,10 +102,10 @@ def test_a_failure_is_reported_with_its_seed_and_rerun(capsys: pytest.CaptureFix
 
 
 def test_results_of_other_code_do_not_count(monkeypatch: pytest.MonkeyPatch) -> None:
-    interrupted_after(monkeypatch, 2)
+    interrupt_after(monkeypatch, 2)
     campaign.main(["done"])
     monkeypatch.setattr(results, "current_commit", lambda: "b" * 10)
-    interrupted_after(monkeypatch, 1)
+    interrupt_after(monkeypatch, 1)
     campaign.main(["done"])
     assert (result_of("done").done, result_of("done").commit) == (10, "b" * 10)
 

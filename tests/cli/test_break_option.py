@@ -42,7 +42,7 @@ S
 
 @pytest.fixture
 def program(tmp_path: Path, pty_robot: PtyRobot) -> Path:
-    pty_robot.ask(lambda robot: robot.sense(0, 0, 42_000))
+    pty_robot.ask(lambda robot: robot.set_readings(0, 0, 42_000))
     path = tmp_path / "drive.ts"
     path.write_text(PROGRAM, encoding="utf-8")
     return path
@@ -98,7 +98,7 @@ def test_a_line_without_an_instruction_halts_before_the_next_one(
 
 
 def test_a_halt_reports_where_the_other_tasks_are(pty_robot: PtyRobot) -> None:
-    pty_robot.ask(lambda robot: robot.sense(0, 0, 42_000))
+    pty_robot.ask(lambda robot: robot.set_readings(0, 0, 42_000))
     result = on(pty_robot, "upload", "-e", TASKS, "--no-save", "--break", "5").gives(0)
     place_lines = result.out.splitlines()[1:6]
     assert place_lines == [
@@ -112,7 +112,7 @@ def test_a_halt_reports_where_the_other_tasks_are(pty_robot: PtyRobot) -> None:
 
 def test_an_instruction_joined_to_the_previous_one_halts_there(pty_robot: PtyRobot) -> None:
     """The compiler takes a reading once: the statement has both."""
-    pty_robot.ask(lambda robot: robot.sense(0, 0, 42_000))
+    pty_robot.ask(lambda robot: robot.set_readings(0, 0, 42_000))
     joined_text = "SI|DISTANCE\nIF(DISTANCE < 10)\nSTOP\nENDIF\nSHOW(2)\n"
     for line in (1, 2):
         result = on(
@@ -257,26 +257,27 @@ def test_the_first_key_at_a_halt_answers_it_and_no_other_key_does_anything(
     seed: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """At any halt, and while the program runs."""
-    rng, typed_keys, commands, wanted_commands = random.Random(seed), "", list[int](), list[int]()
-    it = debugger.Debugger.__new__(debugger.Debugger)
-    it.has_keys, it.is_halted, it.is_stepping, it.keys = True, False, False, Keys()
+    rng, typed_keys, commands, expected_commands = random.Random(seed), "", list[int](), list[int]()
+    fake_debugger = debugger.Debugger.__new__(debugger.Debugger)
+    fake_debugger.has_keys, fake_debugger.keys = True, Keys()
+    fake_debugger.is_halted = fake_debugger.is_stepping = False
     session = SimpleNamespace(resume=commands.append)
-    it.connection = cast(
+    fake_debugger.connection = cast(
         Connection, SimpleNamespace(request=lambda make_request: make_request(session))
     )
-    monkeypatch.setattr(it.keys, "read_keys", lambda: typed_keys)
+    monkeypatch.setattr(fake_debugger.keys, "read_keys", lambda: typed_keys)
     is_halted = False
     for _ in range(60):
         if rng.random() < 0.3:
-            it.is_halted = is_halted = True
+            fake_debugger.is_halted = is_halted = True
         typed_keys = "".join(rng.choices("sgx", k=rng.choice((0, 1, 1, 2))))
-        it.poll_keys()
+        fake_debugger.poll_keys()
         key = next((key for key in typed_keys if key in "sg"), "")
         if key and is_halted:
-            wanted_commands.append(RESUME_STEP if key == "s" else RESUME_GO)
+            expected_commands.append(RESUME_STEP if key == "s" else RESUME_GO)
             is_halted = False
-        assert commands == wanted_commands
-        assert it.is_stepping == (wanted_commands[-1:] == [RESUME_STEP])
+        assert commands == expected_commands
+        assert fake_debugger.is_stepping == (expected_commands[-1:] == [RESUME_STEP])
 
 
 # -- lines of `tsc live` -------------------------------------------------------------------------

@@ -107,16 +107,16 @@ def tsc(room: Class, *words: str) -> CommandResult:
 def start_endless_upload(room: Class) -> Command:
     """A command that stays and has all robots drive."""
     command = Command("class", "upload", "-e", FOREVER, *room.access, data=SECRET + b"\n")
-    all_drive(room)
+    wait_until_all_drive(room)
     return command
 
 
-def all_drive(room: Class) -> None:
+def wait_until_all_drive(room: Class) -> None:
     for robot in room:
         robot.until(lambda robot=robot: robot.moves, "it drives")  # type: ignore[misc]
 
 
-def pass_ms(room: Class, milliseconds: int) -> None:
+def advance_ms(room: Class, milliseconds: int) -> None:
     """Let time pass on each robot."""
     for robot in room:
         end_ms = robot.robot_ms + milliseconds
@@ -146,7 +146,7 @@ def test_computers_without_a_key_can_watch_and_stop(
 ) -> None:
     """Clients without the broker's password do not see the class."""
     tsc(room, "upload", "-e", FOREVER, "--detach").gives(0)
-    all_drive(room)
+    wait_until_all_drive(room)
     become_another_computer(monkeypatch, tmp_path)
     for data in (b"wrong\n", b"\n", b""):
         result = run_subprocess("class", *room.access, data=data)
@@ -183,9 +183,9 @@ def test_watching_changes_nothing(room: Class) -> None:
     command = Command("class", "show", *room.access, data=SECRET + b"\n")
     command.until("SHOW 5")
     command.signal(signal.SIGSTOP)
-    pass_ms(room, 1200)
+    advance_ms(room, 1200)
     command.signal(signal.SIGCONT)
-    pass_ms(room, 2500)
+    advance_ms(room, 2500)
     for robot in room:
         assert robot.moves, robot.actions
     command.process.kill()

@@ -137,7 +137,7 @@ def test_check_reports_all_mistakes_in_both_languages(tsc: Tsc) -> None:
     assert "3 errores." in spanish.err
 
 
-def test_check_json(tsc: Tsc) -> None:
+def test_check_prints_json(tsc: Tsc) -> None:
     result = tsc("check", "--json", "-e", "W(1)\n  ñ = 5; F(1,5, 80)").gives(1)
     first_diagnostic, second_diagnostic = json.loads(result.out)
     assert set(first_diagnostic) == {"code", "severity", "line", "column", "end_line", "end_column",
@@ -275,7 +275,7 @@ def test_show_lists_with_lines(tsc: Tsc, tmp_path: Path) -> None:
     assert tsc("show", "-e", text).out.split("\n", 1)[1] == result.out.split("\n", 1)[1]
 
 
-def test_show_json(tsc: Tsc, program: Path) -> None:
+def test_show_prints_json(tsc: Tsc, program: Path) -> None:
     tsc("compile", program)
     known_fields = json.loads(tsc("show", program.with_suffix(".bin"), "--json").out)
     assert (known_fields["code_bytes"], known_fields["image_bytes"], known_fields["start"]) == (

@@ -106,7 +106,7 @@ class Robot:
         rows = b"".join(pack("<BHI", state, offset, 0) for state, offset in self.tasks)
         return SimpleNamespace(values=SimpleNamespace(tasks=rows))
 
-    def wanted_halt(self, task: int) -> Halt:
+    def expected_halt(self, task: int) -> Halt:
         program, offset = self.program, self.path[self.place]
         location = last_location(program, offset)
         flags = program.map.yes_no_flags or [False] * 9
@@ -148,22 +148,22 @@ def test_a_program_halts_and_goes_on_as_a_person_wants(
     path = [starts[0], *(rng.choice(starts) for _ in range(40))]
     lines = parse_lines([str(rng.randint(1, 9)) for _ in range(3)] + ["2", "2"], "en")
     breakpoints = breakpoint_offsets(lines, program)
-    wanted_breakpoints = set()
+    expected_breakpoints = set()
     for line in lines:
-        wanted_breakpoints.add(min(
+        expected_breakpoints.add(min(
             statement_of(starts, location.offset) for location in program.map.locations
             if location.line - program.first_line + 1 >= line >= 1
             and location[1:3] != location[3:]
         ))  # fmt: skip
-    assert breakpoints == tuple(sorted(wanted_breakpoints))
+    assert breakpoints == tuple(sorted(expected_breakpoints))
     robot = Robot(rng, program, path)
-    said: list[Halt] = []
+    printed_halts: list[Halt] = []
 
     def print_values(
         since_ms: int, name: str, shown: str, sentences: str,
         *, line: int, at: int, variables: Any, tasks: Any,
     ) -> None:  # fmt: skip
-        said.append(Halt(at, line, sentences.splitlines()[0], variables, tasks))
+        printed_halts.append(Halt(at, line, sentences.splitlines()[0], variables, tasks))
 
     monkeypatch.setattr("sys.stdin.isatty", lambda: has_keys)
     monkeypatch.setattr(debugger_of, "is_in_front", lambda: True)
@@ -185,16 +185,18 @@ def test_a_program_halts_and_goes_on_as_a_person_wants(
         event, place = robot.events.popleft(), robot.place
         location = last_location(program, event.offset)
         begins = location is not None and statement_of(starts, location.offset) == event.offset
-        is_told = begins if is_stepping else event.offset in breakpoints
-        wanted = [robot.wanted_halt(event.task)] if is_told else []
-        said.clear()
+        is_reported = begins if is_stepping else event.offset in breakpoints
+        expected = [robot.expected_halt(event.task)] if is_reported else []
+        printed_halts.clear()
         assert debugger.hold_event(event)
-        assert said == wanted
+        assert printed_halts == expected
         assert set(robot.breakpoints) == set(breakpoints)
-        if not (is_told and has_keys):
+        if not (is_reported and has_keys):
             assert not robot.is_halted or robot.place > place, "nothing lets it go on"
-            assert robot.resume_kind == (RESUME_STEP if is_stepping and not is_told else RESUME_GO)
-            is_stepping = is_stepping and not is_told
+            assert robot.resume_kind == (
+                RESUME_STEP if is_stepping and not is_reported else RESUME_GO
+            )
+            is_stepping = is_stepping and not is_reported
             continue
         assert robot.is_halted and robot.place == place, "it does not wait for a key"
         typed_keys = rng.choice("sg")

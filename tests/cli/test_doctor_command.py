@@ -81,7 +81,7 @@ def test_faults_of_a_robot_are_reported(pty_robot: PtyRobot) -> None:
     on(pty_robot, "doctor", "--robot", "liner").gives(
         3, out=("(tinibot), not the kit of liner", "--robot tinibot")
     )
-    pty_robot.ask(lambda robot: robot.supply(True))
+    pty_robot.ask(lambda robot: robot.set_supply(True))
     on(pty_robot, "upload", "-e", "SB|F(1, 50)")
     result = on(pty_robot, "doctor", "--json")
     assert (result.code, causes(result.out)) == (3, ["low_supply"])

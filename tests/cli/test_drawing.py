@@ -131,10 +131,10 @@ def test_without_a_terminal_there_is_no_picture() -> None:
 # ---- how it ends
 
 
-@pytest.mark.parametrize("to_a_file", [False, True])
-def test_ctrl_c_leaves_a_clean_terminal(to_a_file: bool, tmp_path: Path) -> None:
+@pytest.mark.parametrize("writes_to_file", [False, True])
+def test_ctrl_c_leaves_a_clean_terminal(writes_to_file: bool, tmp_path: Path) -> None:
     words = ("run", "-e", FOREVER, "--max-time", "1000000", "--show")
-    output = tmp_path / "trace" if to_a_file else None
+    output = tmp_path / "trace" if writes_to_file else None
     terminal = Terminal(*words, output=output, types=False)
     terminal.until("↑")
     terminal.interrupt()

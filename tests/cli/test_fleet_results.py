@@ -71,7 +71,7 @@ class Course(NamedTuple):
         return (self.kind in ABSENT_REASONS or is_without_robot) and not self.target.is_named
 
     @property
-    def said(self) -> str:
+    def state_text(self) -> str:
         if self.kind in ("done", "bad"):
             return self.kind
         if self.kind == "stopped":
@@ -282,8 +282,8 @@ def test_each_robot_has_its_row_whatever_becomes_of_the_others(
         absent_ports = sorted(
             (course.target.port for course in absent), key=lambda port: int(port[1:])
         )
-        wanted_line = text("crew_absent", "en").format(ports=", ".join(absent_ports))
-        assert absent_lines == [wanted_line] * bool(absent)
+        expected_line = text("crew_absent", "en").format(ports=", ".join(absent_ports))
+        assert absent_lines == [expected_line] * bool(absent)
     assert attend_count >= room.polls
     assert sorted(room.remembered) == sorted(
         (course.target.port, course.target.port.upper(), False)
@@ -297,24 +297,24 @@ def check_rows(output: str, rows: Sequence[str], courses: Sequence[Course]) -> N
     for course in courses:
         port = course.target.port
         name = port.upper() if course.has_answered else course.target.name
-        row = f"{name} ({port}): {course.said}" if name else f"{port}: {course.said}"
+        row = f"{name} ({port}): {course.state_text}" if name else f"{port}: {course.state_text}"
         if output == "json":
             fields = {"more": 5} if course.kind in ("done", "bad") else {}
             row = json.dumps({
                 "event": "RESULT", "port": port, "robot": name or None,
                 "is_done": course.kind == "done", "is_absent": course.is_absent,
-                "said": course.said, **fields,
+                "said": course.state_text, **fields,
             })  # fmt: skip
-        wanted_rows = [*(course.lines if course.kind != "silent" else []), row]
+        expected_rows = [*(course.lines if course.kind != "silent" else []), row]
         if output != "json" and course.is_absent:
-            wanted_rows.pop()
-        assert [row for row in rows if row in wanted_rows] == wanted_rows
-        left = [row for row in left if row not in wanted_rows]
+            expected_rows.pop()
+        assert [row for row in rows if row in expected_rows] == expected_rows
+        left = [row for row in left if row not in expected_rows]
     assert left == []
     if output == "a table":
         present = [course for course in courses if not course.is_absent]
         marks = [next(
-            (course.kind == "done" for course in present if row.endswith(f"): {course.said}")
+            (course.kind == "done" for course in present if row.endswith(f"): {course.state_text}")
              or row.startswith(f"{course.target.port}: ")), None
         ) for row in rows if " says " not in row]  # fmt: skip
         assert marks == sorted(marks, key=lambda is_done: not is_done), "failures are last"
@@ -450,11 +450,11 @@ def test_each_port_that_may_have_a_robot_is_a_target_once(
     """However many ways lead to it: the first one counts for its place and its spelling."""
     rng = random.Random(seed)
 
-    def some() -> list[str]:
+    def draw_ports() -> list[str]:
         return rng.sample(PORTS, rng.randint(0, 4))
 
-    held, listed, running, named, missing, gone = (some() for _ in range(6))
-    remembered = {port: f"R{number}" for number, port in enumerate(some())}
+    held, listed, running, named, missing, gone = (draw_ports() for _ in range(6))
+    remembered = {port: f"R{number}" for number, port in enumerate(draw_ports())}
     is_all = rng.random() < 0.6
     monkeypatch.setattr(member_of, "find_all", lambda: [SimpleNamespace(port=it) for it in held])
     monkeypatch.setattr(member_of, "exists", lambda port: port not in missing)
@@ -467,10 +467,10 @@ def test_each_port_that_may_have_a_robot_is_a_target_once(
     )
     known = [port for port in remembered if port not in (*missing, *gone)]
     candidates = [*held, *known, *listed, *running] if is_all else named
-    wanted: dict[str, Target] = {}
+    expected: dict[str, Target] = {}
     for port in candidates:
         name = next((name for it, name in remembered.items() if it.lower() == port.lower()), None)
         target = Target(port, name or "", not is_all, name is not None)
-        wanted.setdefault(port.lower(), target)
+        expected.setdefault(port.lower(), target)
     options = Namespace(all=is_all, ports=[] if is_all else named)
-    assert member_of.targets(options) == [*wanted.values()]
+    assert member_of.targets(options) == [*expected.values()]

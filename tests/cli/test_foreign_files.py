@@ -97,9 +97,9 @@ def test_a_pipe_in_a_folder_is_not_a_file(words: list[str], tmp_path: Path) -> N
     for name in ("pipe", "pipe.ts", "pipe.toml", "lesson.toml"):
         (tmp_path / name).unlink(missing_ok=True)
         os.mkfifo(tmp_path / name)
-    given_words = [word.format(pipe=tmp_path / "pipe", lesson=tmp_path) for word in words]
+    filled_words = [word.format(pipe=tmp_path / "pipe", lesson=tmp_path) for word in words]
     completed = subprocess.run(
-        [*TSC, *given_words], capture_output=True, text=True, timeout=HANG_LIMIT_S
+        [*TSC, *filled_words], capture_output=True, text=True, timeout=HANG_LIMIT_S
     )
     assert (
         completed.returncode == 2 and completed.stderr.startswith("tsc: ")

@@ -107,11 +107,11 @@ def test_long_rows_and_many_rows_are_printed_in_full(rows: int) -> None:
     terminal = Terminal()
     lines = [Text(f"value {k}") for k in range(8)]
     terminal.draw(lines)
-    much = "\n".join(f"row {k}" for k in range(rows))
-    terminal.draw(lines, much)
+    long_text = "\n".join(f"row {k}" for k in range(rows))
+    terminal.draw(lines, long_text)
     terminal.draw(lines, "x" * COLUMNS * 2)
     terminal.draw(lines, "y" * (COLUMNS - 1))
-    expected = [*much.split("\n"), "x" * COLUMNS, "x" * COLUMNS, "y" * (COLUMNS - 1)]
+    expected = [*long_text.split("\n"), "x" * COLUMNS, "x" * COLUMNS, "y" * (COLUMNS - 1)]
     expected += [text.plain for text in lines]
     assert [line for line in terminal.all_lines() if line] == expected
 

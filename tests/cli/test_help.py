@@ -136,7 +136,7 @@ def test_the_first_help_lists_the_ten_most_needed_commands(language: str) -> Non
     )
 
 
-@each_row("asked_text, verb", [
+@each_row("question, verb", [
     ("put firmware on", "firmware"), ("rename robot", "set name"),
     ("list serial ports", "doctor --ports"), ("make it drive straight", "set trim"),
     ("read my program back", "show --port"), ("bluetooth pin", "doctor --module"),
@@ -147,10 +147,10 @@ def test_the_first_help_lists_the_ten_most_needed_commands(language: str) -> Non
     ("robot does not answer", "doctor"), ("no responde", "doctor"),
     ("ver los sensores", "live"), ("programar con bloques", "studio"),
 ])  # fmt: skip
-def test_a_command_is_found_by_what_it_does(tsc: Tsc, asked_text: str, verb: str) -> None:
-    result = tsc("help", asked_text).gives(0)
+def test_a_command_is_found_by_what_it_does(tsc: Tsc, question: str, verb: str) -> None:
+    result = tsc("help", question).gives(0)
     assert re.match(rf"tsc {verb}\b", rows_of(result.out)[0])
-    assert tsc("help", *asked_text.split()).out == result.out
+    assert tsc("help", *question.split()).out == result.out
 
 
 def test_an_unanswerable_question_is_reported(tsc: Tsc) -> None:

@@ -350,13 +350,13 @@ def test_a_suspended_writer_does_not_block_others_for_ever(
     saved_numbers = restore(kept_memory, tmp_path)
     now_s = 0.0
 
-    def pass_time(seconds: float) -> None:
+    def advance_time(seconds: float) -> None:
         nonlocal now_s
         now_s += seconds
         assert now_s < 2 * files.LOCK_WAIT_S, "it waits for ever"
 
     monkeypatch.setattr(files, "monotonic", lambda: now_s)
-    monkeypatch.setattr(files, "sleep", pass_time)
+    monkeypatch.setattr(files, "sleep", advance_time)
     with ExitStack() as stack:
         for lock in [*tmp_path.rglob(f"*{files.LOCK_ENDING}")]:
             stack.enter_context(
@@ -513,13 +513,13 @@ def test_what_was_kept_last_is_there_and_the_oldest_gives_way(
     name: str, seed: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """This holds whatever was kept before; each is there once, with its last value."""
-    memory, chance, clock = LIMITED_MEMORIES[name], Random(seed), count(1)
-    room = chance.choice((1, 3))
+    memory, rng, clock = LIMITED_MEMORIES[name], Random(seed), count(1)
+    room = rng.choice((1, 3))
     monkeypatch.setattr(memory.module, memory.room, room)
     expected = dict[int, int]()
     for _ in range(25):
-        number = chance.choice(NUMBERS)
-        value = 0 if name in HAS_NO_VALUES else chance.randrange(1, 4)
+        number = rng.choice(NUMBERS)
+        value = 0 if name in HAS_NO_VALUES else rng.randrange(1, 4)
         memory.remember(number, value)
         date_files(tmp_path, clock)
         if not (memory.ignores_known and expected.get(number) == value):
@@ -535,14 +535,14 @@ def test_what_was_kept_last_is_there_and_the_oldest_gives_way(
 @pytest.mark.parametrize("seed", range(3))
 def test_of_robots_that_were_met_and_that_may_answer_neither_loses_the_other(seed: int) -> None:
     """They are in one file."""
-    chance, path, places, accepted = Random(seed), met_robots_file(), dict[str, int](), set[int]()
+    rng, path, places, accepted = Random(seed), met_robots_file(), dict[str, int](), set[int]()
     for _ in range(20):
-        robot = chance.choice(NUMBERS)
-        if chance.random() < 0.5:
+        robot = rng.choice(NUMBERS)
+        if rng.random() < 0.5:
             met_robots.accept(path, robot)
             accepted.add(robot)
         else:
-            place = chance.choice("ab")
+            place = rng.choice("ab")
             met_robots.remember_robot(path, place, robot)
             places[place] = robot
         found = met_robots.read_met_robots(path)

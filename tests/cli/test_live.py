@@ -28,7 +28,7 @@ def test_a_line_runs_at_once_and_the_stored_program_stays(pty_robot: PtyRobot) -
 
 
 def test_variables_and_defs_persist(pty_robot: PtyRobot) -> None:
-    pty_robot.ask(lambda robot: robot.sense(0, 0, 30_000))
+    pty_robot.ask(lambda robot: robot.set_readings(0, 0, 30_000))
     lines = (
         "X = DISTANCE + 0.5; READY = TRUE",
         "DEF TELL; SHOW(X); END_DEF",

@@ -283,14 +283,14 @@ def test_a_line_does_the_same_whatever_came_before_it(
     a robot shows between two lines is printed before the second one's."""
     rng = random.Random(seed)
     state, session, has_left = State(), Session(monkeypatch), False
-    robot, wanted_stops = session.robot, 0
+    robot, expected_stops = session.robot, 0
 
     def take_output() -> tuple[list[str], str]:
         out, err = capsys.readouterr()
         return [row for row in out.splitlines() if row.startswith("SHOW")], err
 
     def typed() -> Iterator[str | BaseException]:
-        nonlocal wanted_stops, has_left
+        nonlocal expected_stops, has_left
         yield FIRST_LINE
         yield "LOOP(2); F(2 80)"
         assert session.prompt == live.PROMPT, "the mistake is said before the end of the block"
@@ -303,21 +303,21 @@ def test_a_line_does_the_same_whatever_came_before_it(
                 do_all(line.steps, line_state)
             except Fault:
                 is_faulty = True
-            wanted_rows = []
+            expected_rows = []
             if rng.random() < 0.2:
                 values = 7000, *([BOOKKEEPING_MARK, 5000] if rng.random() < 0.5 else [])
                 robot.events += [ShownEvent(value, False, BUTTON_RUN) for value in values]
-                wanted_rows.append("SHOW 7")  # the others are of another session's line
+                expected_rows.append("SHOW 7")  # the others are of another session's line
             if rng.random() < 0.2:
                 if rng.random() < 0.5:
                     yield "LOOP(2)"  # it is dropped
                 robot.failure = rng.choice((None, None, CommandError(3, "not_confirmed", port="p")))
-                wanted_sentence = "not confirmed" if robot.failure else "has confirmed"
+                expected_sentence = "not confirmed" if robot.failure else "has confirmed"
                 yield KeyboardInterrupt()
-                wanted_stops += 1
+                expected_stops += 1
                 rows, err = take_output()
-                assert rows == wanted_rows and wanted_sentence in err
-                wanted_rows = []
+                assert rows == expected_rows and expected_sentence in err
+                expected_rows = []
             robot.room = NARROW if rng.random() < 0.2 else ROOMY
             presses_after = rng.randrange(8) if line.steps and rng.random() < 0.3 else None
             robot.presses_after = presses_after
@@ -338,20 +338,20 @@ def test_a_line_does_the_same_whatever_came_before_it(
             assert not (is_forgotten and is_faulty)
             if is_stopped:
                 assert presses_after is not None
-                wanted_stops += 1
+                expected_stops += 1
                 shown_rows = line_state.shown[: max(0, presses_after - 1)]  # after the start
-                own_rows = rows[len(wanted_rows) :]
+                own_rows = rows[len(expected_rows) :]
                 held_rows = shown_rows[len(own_rows) :]  # perhaps the values of its variables
                 assert not held_rows or held_rows[0] == f"SHOW {MARK}"
-                wanted_rows += shown_rows[: len(own_rows)]
+                expected_rows += shown_rows[: len(own_rows)]
             elif not (is_refused or has_failed):
-                wanted_rows += line_state.shown
+                expected_rows += line_state.shown
                 if not is_faulty:
                     state.defs = line_state.defs
                     state.values = (
                         state.values if is_forgotten or robot.loses_value else line_state.values
                     )
-            assert (rows, robot.stop_count) == (wanted_rows, wanted_stops), line.text + err
+            assert (rows, robot.stop_count) == (expected_rows, expected_stops), line.text + err
         robot.room, robot.own_shows = ROOMY, None
         yield "; ".join(f"SHOW({name})" for name in state.values)
         assert take_output()[0] == [f"SHOW {str(value).upper()}" for value in state.values.values()]
@@ -440,23 +440,23 @@ class RemoteKeys:
 
 
 @pytest.mark.parametrize("line", [None, "SHOW(5)", "SHOW(1 / (TIME - TIME))"])
-@pytest.mark.parametrize("quits", [False, True])
+@pytest.mark.parametrize("does_quit", [False, True])
 @pytest.mark.parametrize("presses_at", [1, 2, 9])
 @pytest.mark.parametrize("is_stop_lost", [False, True])
 def test_a_terminal_as_a_remote_control_says_how_it_ended(
-    line: str | None, quits: bool, presses_at: int, is_stop_lost: bool,
+    line: str | None, does_quit: bool, presses_at: int, is_stop_lost: bool,
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str],
 ) -> None:  # fmt: skip
     """Whatever happens, the terminal is left, and what the robot shows is printed."""
     session = Session(monkeypatch)
     monkeypatch.setattr(live, "TerminalRemote", RemoteKeys)
     monkeypatch.setattr(RemoteKeys, "calls", [])
-    monkeypatch.setattr(RemoteKeys, "quits", quits)
+    monkeypatch.setattr(RemoteKeys, "quits", does_quit)
     monkeypatch.setattr(RemoteKeys, "presses_at", presses_at)
     if line is None:
         session.robot.events.append(ShownEvent(5000, False, BUTTON_RUN))
     is_pressed = line is None or presses_at < 3  # the start, and the next event
-    exit_code = 0 if quits else INTERRUPTED
+    exit_code = 0 if does_quit else INTERRUPTED
     if not is_pressed:
         exit_code = DONE if line == "SHOW(5)" else FAULTY
     if is_stop_lost and is_pressed:

@@ -196,7 +196,7 @@ def test_the_doctor_examines_each_of_many_robots_like_a_single_one(class_: Robot
     """Its causes are in the row of the robot, and each is asked as often as was said."""
     weak = class_.pupils[1]
     with weak._lock:
-        weak.robot.supply(True)
+        weak.robot.set_supply(True)
     run_in_process("upload", "-e", "SB|S", "--port", weak.port)
     heard_count_by_port = {pupil.port: len(pupil.received) for pupil in class_.pupils}
     robots_by_port = results(run_in_process("doctor", "--all", "--count", "3", "--json").gives(3))

@@ -54,8 +54,8 @@ def test_an_option_takes_precedence_with_one_notice(verb: str, tsc: Tsc, liner: 
     result = tsc(verb, *words, liner, "--robot", "tinibot").gives(1)
     assert result.err.startswith(PRECEDENCE_MESSAGE.format("tinibot", liner, "liner"))
     assert result.err.count(" takes precedence: ") == 1
-    wanted_text = "Try:  Write --robot liner in the command, not tinibot"
-    assert wanted_text in result.err  # the comment is there already
+    expected_text = "Try:  Write --robot liner in the command, not tinibot"
+    assert expected_text in result.err  # the comment is there already
     same = tsc(verb, *words, liner, "--robot", "LINER").gives(0)
     assert " takes precedence: " not in same.err
 

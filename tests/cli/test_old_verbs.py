@@ -108,8 +108,8 @@ def find_unknown_word(command: str) -> str | None:
         for flag in option.flags.split()
     }
     flags = [re.match("-[-a-z0-9]+", word) for word in words[1:]]
-    given_words = [flag[0] for flag in flags if flag is not None and flag[0].startswith("--")]
-    return next((flag for flag in given_words if flag not in known_names), None)
+    flag_names = [flag[0] for flag in flags if flag is not None and flag[0].startswith("--")]
+    return next((flag for flag in flag_names if flag not in known_names), None)
 
 
 @pytest.mark.parametrize("language", LANGUAGES)

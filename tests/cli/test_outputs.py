@@ -139,7 +139,7 @@ def test_the_default_image_path_is_also_an_output(tsc: Tsc, tmp_path: Path) -> N
     assert profile.read_text(encoding="utf-8") == PROFILE
 
 
-def test_two_missing_outputs_are_told_apart(tsc: Tsc, working_folder: Path) -> None:
+def test_two_paths_of_one_missing_file_are_recognized(tsc: Tsc, working_folder: Path) -> None:
     """Capitals do not count: on many systems they do not once the files are there."""
     (working_folder / "folder").mkdir()
     (working_folder / "link").symlink_to("x")

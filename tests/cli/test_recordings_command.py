@@ -163,8 +163,8 @@ def test_a_virtual_robot_that_hurries_is_recorded_in_its_own_time(
     run_in_process("upload", program, "--virtual", "--hurry", hurry, "--record", file).gives(0)
     events = decode(file.read_bytes()).rows
     assert [event.event for event in events] == [*(f"SHOW {k}" for k in range(1, 7)), "DONE"]
-    for event, wanted_ms in zip(events, (*range(2000, 12_001, 2000), 15_000), strict=True):
-        assert wanted_ms <= event.ms <= wanted_ms + 100, events
+    for event, expected_ms in zip(events, (*range(2000, 12_001, 2000), 15_000), strict=True):
+        assert expected_ms <= event.ms <= expected_ms + 100, events
     result = run_in_process("run", file)
     assert (result.code, result.err) == (0, "Both robots did the same. Values compared: 7.\n")
 
@@ -319,13 +319,13 @@ def test_a_recording_has_an_end_and_no_more(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     file, show = tmp_path / "run.tsr", ("SHOW", "1")
-    for end_options, wanted_texts in (
+    for end_options, expected_texts in (
         ((), ["SHOW 1", "STOPPED"]),
         ((("MISSED", "3"), ("SHOW", "2"), ("DONE", "")), ["SHOW 1", "MISSED"]),
         ((("TEXT", "hello"), ("STOPPED", "BUTTON"), ("DONE", "")), ["SHOW 1", "STOPPED"]),
     ):
         events = record(file, show, *end_options, start_s=monotonic())
-        assert [event.event for event in events] == wanted_texts
+        assert [event.event for event in events] == expected_texts
     with monkeypatch.context() as patch:
         patch.setattr(recordings, "MOST_ROW_BYTES", 30)
         events = record(file, *(("SHOW", str(k)) for k in range(9)), end="LOST")
@@ -353,15 +353,15 @@ def test_messages_after_the_end_of_a_run_are_not_recorded(tmp_path: Path, seed: 
     assert names[-1] in ENDING_EVENTS and not {*names[:-1]} & {*ENDING_EVENTS}
 
 
-@pytest.mark.parametrize(("event", "wanted_text"), [("", "STOPPED"), ("LOST", "LOST")])
+@pytest.mark.parametrize(("event", "expected_text"), [("", "STOPPED"), ("LOST", "LOST")])
 def test_a_recording_ends_when_the_run_does(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, event: str, wanted_text: str
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, event: str, expected_text: str
 ) -> None:
     """A robot that hangs after its first value and is stopped by hand has not done the same."""
     file, clock = tmp_path / "run.tsr", iter((10.2, 70.0))
     monkeypatch.setattr(recorder, "monotonic", lambda: next(clock))
     events = record(file, ("SHOW", "5"), start_s=10.0, end=event)
-    assert events == (Row(200, "SHOW 5"), Row(60_000, wanted_text))
+    assert events == (Row(200, "SHOW 5"), Row(60_000, expected_text))
     compared_divergence = play(prepare(decode(file.read_bytes()))).divergence
     assert compared_divergence is not None and compared_divergence.outcome == (
         "same" if event else "virtual_more"
@@ -373,23 +373,23 @@ def test_after_ctrl_c_the_time_of_saving_does_not_count(
 ) -> None:
     file, now_s = tmp_path / "run.tsr", [5.0]
 
-    def ctrl_c(*_: object) -> int:
+    def raise_ctrl_c(*_: object) -> int:
         now_s[0] += 2
         raise KeyboardInterrupt
 
-    def saves(_: Saving) -> None:
+    def save_slowly(_: Saving) -> None:
         now_s[0] += 30
 
-    def printer(*arguments: object) -> EventPrinter:
+    def make_printer_slowly(*arguments: object) -> EventPrinter:
         now_s[0] += 3  # the robot runs while this is loaded, and its time counts from before
         return make_printer(*arguments)  # type: ignore[arg-type]
 
     make_printer = event_printer.printer_of
-    monkeypatch.setattr(upload, "printer_of", printer)
+    monkeypatch.setattr(upload, "printer_of", make_printer_slowly)
     monkeypatch.setattr(upload, "monotonic", lambda: now_s[0])
     monkeypatch.setattr(recorder, "monotonic", lambda: now_s[0])
-    monkeypatch.setattr(upload, "follow_run", ctrl_c)
-    monkeypatch.setattr(Saving, "wait", saves)
+    monkeypatch.setattr(upload, "follow_run", raise_ctrl_c)
+    monkeypatch.setattr(Saving, "wait", save_slowly)
     monkeypatch.setattr(CommandSimulator, "event_ms", None)  # like a real robot, it has no clock
     tsc("upload", "-e", "SI|F(9, 60)", "--virtual", "--record", file).gives(2, "confirmed")
     assert decode(file.read_bytes()).rows == (Row(5000, "STOPPED"),)

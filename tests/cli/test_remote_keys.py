@@ -184,9 +184,9 @@ def test_held_keys_are_sent_at_once_and_repeatedly(
             table.status = rng.choice((OK, CANCELLED, LOST, None))
             remote.poll()
             held_state = held_keys.keys_at(table.now_s)
-            said_s, said = table.words[-1] if table.words else (0.0, NOTHING_PRESSED)
-            assert said == held_state
-            assert held_state == NOTHING_PRESSED or table.now_s - said_s < SEND_INTERVAL_S
+            sent_s, sent_state = table.words[-1] if table.words else (0.0, NOTHING_PRESSED)
+            assert sent_state == held_state
+            assert held_state == NOTHING_PRESSED or table.now_s - sent_s < SEND_INTERVAL_S
             table.now_s += POLL_S
         assert table.is_entered
     assert not table.is_entered

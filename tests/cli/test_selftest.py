@@ -52,7 +52,7 @@ def find_with_selftest(
 
 
 def test_a_good_robot_passes_without_a_person(pty_robot: PtyRobot) -> None:
-    pty_robot.ask(lambda robot: robot.sense(*GOOD_READINGS))
+    pty_robot.ask(lambda robot: robot.set_readings(*GOOD_READINGS))
     code, parts = find_with_selftest(pty_robot)
     assert code == 0
     verdicts = {name: value["verdict"] for name, value in parts.items()}
@@ -84,7 +84,7 @@ def test_every_board_has_its_sensors_tested(name: str) -> None:
     kit = robots.load(name).kit
     with PtyRobot(kit) as robot:
         middle = [sensor.is_yes_no or (sensor.low + sensor.high) // 2 for sensor in kit.sensors]
-        robot.ask(lambda host: host.sense(*map(int, middle)))
+        robot.ask(lambda host: host.set_readings(*map(int, middle)))
         code, parts = find_with_selftest(robot)
         # an ESP32's robot has the words of the paper's
         kits = {name: robots.load(name).kit for name in robots.names()}
@@ -119,7 +119,7 @@ def test_a_restart_during_the_self_test_is_reported(
 
 def test_the_self_test_agrees_with_the_doctor(pty_robot: PtyRobot) -> None:
     """The causes are in one table, so supply, line and kit have no texts of their own here."""
-    pty_robot.ask(lambda robot: robot.supply(True))
+    pty_robot.ask(lambda robot: robot.set_supply(True))
     on(pty_robot, "upload", "-e", "SB|F(1, 50)")
     pty_robot.damages = 97
     findings = json.loads(on(pty_robot, "doctor", "--robot", "liner", "--json").out)["findings"]
@@ -137,16 +137,16 @@ def test_the_self_test_agrees_with_the_doctor(pty_robot: PtyRobot) -> None:
 def test_the_self_test_finds_faults(pty_robot: PtyRobot) -> None:
     """A sensor at the end of its range, a bad line, and in the middle of it the robot is silent."""
     lowest_reading = pty_robot.kit.sensors[0].low
-    pty_robot.ask(lambda robot: robot.sense(lowest_reading, GOOD_LIGHT, GOOD_DISTANCE))
+    pty_robot.ask(lambda robot: robot.set_readings(lowest_reading, GOOD_LIGHT, GOOD_DISTANCE))
     _, parts = find_with_selftest(pty_robot)
     first_sensor, second_sensor = (f"sensor {sensor.name}" for sensor in pty_robot.kit.sensors[:2])
     assert parts[first_sensor]["cause"] == "stuck"
     assert parts[second_sensor]["verdict"] == "ok"
-    pty_robot.ask(lambda robot: robot.sense(GOOD_LIGHT, GOOD_LIGHT, 0))
+    pty_robot.ask(lambda robot: robot.set_readings(GOOD_LIGHT, GOOD_LIGHT, 0))
     code, parts = find_with_selftest(pty_robot)
     assert (code, parts["sensor DISTANCE"]["cause"]) == (3, "echo_hung")
     assert parts["sensor DISTANCE"]["verdict"] == "wrong"
-    pty_robot.ask(lambda robot: robot.sense(lowest_reading, GOOD_LIGHT, GOOD_DISTANCE))
+    pty_robot.ask(lambda robot: robot.set_readings(lowest_reading, GOOD_LIGHT, GOOD_DISTANCE))
     pty_robot.damages = 100
     code, parts = find_with_selftest(pty_robot)
     assert code == 3
@@ -266,9 +266,9 @@ def person(
 
     def answer(question: str) -> str:
         if "Now put a hand" in question and is_noticed:
-            pty_robot.ask(lambda robot: robot.sense(100_000, 100_000, 5_000))
+            pty_robot.ask(lambda robot: robot.set_readings(100_000, 100_000, 5_000))
         elif "its surroundings clear" in question:
-            pty_robot.ask(lambda robot: robot.sense(*GOOD_READINGS))
+            pty_robot.ask(lambda robot: robot.set_readings(*GOOD_READINGS))
         elif "motor turned" in question:
             return wires.answer_after(pty_robot.actions)
         return learns if "can remember" in question else "1"
@@ -281,7 +281,7 @@ def causes(json_output: str) -> set[str]:
 
 
 def test_a_good_robot_passes_with_a_person(pty_robot: PtyRobot) -> None:
-    pty_robot.ask(lambda robot: robot.sense(*GOOD_READINGS))
+    pty_robot.ask(lambda robot: robot.set_readings(*GOOD_READINGS))
     assert on(pty_robot, "upload", "-e", "SB|F(1, 50)").code == 0
     code, out, _ = run_self_test(pty_robot, person(pty_robot), "--json")
     assert code == 0, out
@@ -295,12 +295,12 @@ def test_a_good_robot_passes_with_a_person(pty_robot: PtyRobot) -> None:
 
 @pytest.mark.parametrize("motor", [1, 2])
 def test_ctrl_c_stops_the_robot_whichever_motor_turns(pty_robot: PtyRobot, motor: int) -> None:
-    pty_robot.ask(lambda robot: robot.sense(*GOOD_READINGS))
+    pty_robot.ask(lambda robot: robot.set_readings(*GOOD_READINGS))
     sensors = 2 * len(pty_robot.kit.sensors)
     answers = b"\n" * (1 + sensors) + b"1\n" * (motor - 1)
     command = Command("doctor", "--selftest", "--port", pty_robot.port, data=answers)
-    begun_text = ["MOTORS 60 0", "MOTORS 0 60"][motor - 1]
-    pty_robot.until(lambda: begun_text in pty_robot.actions, "a motor turns")
+    start_action = ["MOTORS 60 0", "MOTORS 0 60"][motor - 1]
+    pty_robot.until(lambda: start_action in pty_robot.actions, "a motor turns")
     command.signal(signal.SIGINT)
     assert command.wait_for_result().code == 2
     assert not pty_robot.moves
@@ -308,7 +308,7 @@ def test_ctrl_c_stops_the_robot_whichever_motor_turns(pty_robot: PtyRobot, motor
 
 def test_faults_seen_by_a_person_are_reported(pty_robot: PtyRobot) -> None:
     """The person reports motors that turn wrong or not at all, and sensors that notice nothing."""
-    pty_robot.ask(lambda robot: robot.sense(*GOOD_READINGS))
+    pty_robot.ask(lambda robot: robot.set_readings(*GOOD_READINGS))
     for wires, expected in (
         (Wires(is_exchanged=True), "tsc set trim"), (Wires(is_dead=True), "check its wires"),
     ):  # fmt: skip
@@ -363,7 +363,7 @@ WIRES = [Wires(*flags) for flags in product((False, True), repeat=3)]
 @pytest.mark.parametrize("wires", WIRES)
 def test_a_robot_learns_how_its_motors_are_wired(pty_robot: PtyRobot, wires: Wires) -> None:
     """Earlier values do not matter; the rest of its trim stays."""
-    pty_robot.ask(lambda robot: robot.sense(*GOOD_READINGS))
+    pty_robot.ask(lambda robot: robot.set_readings(*GOOD_READINGS))
     for options_before in ((), ("--exchange", "yes", "--reverse-left", "yes", "--balance", "7")):
         assert on(pty_robot, "set", "trim", *options_before, "--least", "3").code == 0
         code, out, _ = run_self_test(pty_robot, person(pty_robot, wires, learns="1"))
@@ -376,7 +376,7 @@ def test_a_robot_learns_how_its_motors_are_wired(pty_robot: PtyRobot, wires: Wir
 
 def test_repeating_a_step_turns_the_motor_again(pty_robot: PtyRobot) -> None:
     """Without a requested number, no motor moves. If the person leaves, no motor turns either."""
-    pty_robot.ask(lambda robot: robot.sense(*GOOD_READINGS))
+    pty_robot.ask(lambda robot: robot.set_readings(*GOOD_READINGS))
     assert on(pty_robot, "doctor", "--selftest").code == 0
     assert not any("MOTORS" in line for line in pty_robot.actions)
     answers = iter(["6", "7", "6", "1", "3", "1"])

@@ -35,7 +35,7 @@ def forget_maps() -> None:
 
 
 def test_upload_names_the_values_of_its_program(pty_robot: PtyRobot) -> None:
-    pty_robot.ask(lambda robot: robot.sense(20_000, 60_000, 12_500))
+    pty_robot.ask(lambda robot: robot.set_readings(20_000, 60_000, 12_500))
     text = "SI|SHOW(DISTANCE); SHOW(light_r-light_l)\nSHOW(7)\nSHOW(DISTANCE)"
     result = on(pty_robot, "upload", "-e", text).gives(0)
     assert result.out.splitlines()[1:5] == [

@@ -177,12 +177,12 @@ def test_a_stop_from_elsewhere_during_trimming_keeps_the_previous_trim(
     """Another terminal stops the robot in the moment in which it is given a trim to try.
 
     Whatever a robot that answers has answered to the trial or to the former trim."""
-    given_bytes: list[bytes] = []
+    sent_trims: list[bytes] = []
     stops: list[str] = []
 
     class Asked:
         def trim(self, data: bytes) -> None:
-            given_bytes.append(data)
+            sent_trims.append(data)
 
     class Connected:
         def request(self, make_request: Callable[[Asked], None], taken: object) -> None:
@@ -207,7 +207,7 @@ def test_a_stop_from_elsewhere_during_trimming_keeps_the_previous_trim(
         stops[:] = stale_keys
         with pytest.raises(CommandError, match=key):
             trim_wizard.guide(cast("Connection", Connected()), Trim(balance=7))
-        assert given_bytes.pop() == Trim(balance=7).data() and not given_bytes
+        assert sent_trims.pop() == Trim(balance=7).data() and not sent_trims
 
 
 def test_ctrl_c_stops_the_robot_and_keeps_its_trim(pty_robot: PtyRobot) -> None:
@@ -304,8 +304,8 @@ def test_a_person_measures_with_tape_and_protractor(pty_robot: PtyRobot) -> None
     assert stored_trim(pty_robot).pace == Pace(16.5, 33.25, 144, 288)
     assert result.err.count("18 in") == 5
     assert "drives 16.5 cm per second at 40 % and 33.25 at 80 %" in result.out
-    told_by_info = pty_robots.on(pty_robot, "doctor").out
-    assert "turns 144 degrees per second at 40 % and 288 at 80 %" in told_by_info
+    report = pty_robots.on(pty_robot, "doctor").out
+    assert "turns 144 degrees per second at 40 % and 288 at 80 %" in report
 
 
 def test_a_lower_speed_at_80_is_measured_again(pty_robot: PtyRobot) -> None:

@@ -23,7 +23,7 @@ def test_upload_runs_the_program_and_stays_until_it_ends(
 ) -> None:
     program = tmp_path / "drive.ts"
     program.write_text("SI|F(0.2, 80)\nSHOW(DISTANCE + 1.5); SHOW(TRUE)\n", encoding="utf-8")
-    pty_robot.ask(lambda robot: robot.sense(0, 0, 42_000))
+    pty_robot.ask(lambda robot: robot.set_readings(0, 0, 42_000))
     result = on(pty_robot, "upload", program).gives(0, "")
     receipt, *rest = result.out.splitlines()
     assert receipt == f"{program} -> tinibot ({pty_robot.port})   SI: running"
@@ -196,7 +196,7 @@ def test_while_driving_a_name_and_a_trim_are_reported_as_saved_later(pty_robot: 
 
 
 def test_weak_batteries_are_reported(pty_robot: PtyRobot) -> None:
-    pty_robot.ask(lambda robot: robot.supply(is_low=True))
+    pty_robot.ask(lambda robot: robot.set_supply(is_low=True))
     result = on(pty_robot, "upload", "-e", "SI|SHOW(6)", "--no-save")
     assert result.code == 0 and "batter" not in result.err + result.out, "nothing is to be saved"
     result = on(pty_robot, "upload", "-e", "SI|SHOW(7)")
@@ -210,17 +210,17 @@ def test_weak_batteries_are_reported(pty_robot: PtyRobot) -> None:
     for words in (("set", "name", "ANA"), ("set", "trim", "--balance", "5")):
         on(pty_robot, *words).gives(3, "Change the batteries")
         assert "Cambia las pilas" in on(pty_robot, *words, "--lang", "es").err
-    pty_robot.ask(lambda robot: robot.supply(is_low=False))
+    pty_robot.ask(lambda robot: robot.set_supply(is_low=False))
     assert on(pty_robot, "set", "name", "ANA").code == 0
     assert json.loads(on(pty_robot, "doctor", "--json").out)["robot"]["saved"] == "STORED"
 
 
 def test_a_recovered_supply_saves_the_running_program(pty_robot: PtyRobot) -> None:
     """Somebody plugs the USB cable in."""
-    pty_robot.ask(lambda robot: robot.supply(is_low=True))
+    pty_robot.ask(lambda robot: robot.set_supply(is_low=True))
     command = Command("upload", "-e", WAITING_PROGRAM, "--port", pty_robot.port, "--json")
     command.until('"saved": "LOW_SUPPLY"')
-    pty_robot.ask(lambda robot: robot.supply(is_low=False))
+    pty_robot.ask(lambda robot: robot.set_supply(is_low=False))
     command.until('"event": "SAVED"')
     assert interrupt(command).code == 2
 
@@ -304,7 +304,7 @@ def test_undo_through_a_port_that_is_lost_says_which_program_the_robot_has(
         raise CommandError(3, "port_lost")
 
     monkeypatch.setattr(start_previous.UndoSaving, "wait", lose)
-    pty_robot.ask(lambda robot: robot.supply(is_low=not is_saved))
+    pty_robot.ask(lambda robot: robot.set_supply(is_low=not is_saved))
     result = run_in_process("start", "--previous", "--port", pty_robot.port)
     assert result.code == (0 if is_saved else 3), result
     assert ("newer program again" in result.err) != is_saved
@@ -315,14 +315,14 @@ def test_undo_through_a_port_that_is_lost_says_which_program_the_robot_has(
 @pytest.mark.sampled(of="slow commands")
 def test_with_weak_batteries_undo_reports_that_nothing_is_lost(pty_robot: PtyRobot) -> None:
     first_checksum, second_checksum = upload_two(pty_robot)
-    pty_robot.ask(lambda robot: robot.supply(is_low=True))
+    pty_robot.ask(lambda robot: robot.set_supply(is_low=True))
     for language, expected in (("en", "Nothing is lost"), ("es", "No se pierde nada")):
         on(pty_robot, "start", "--previous", "--lang", language).gives(
             3, expected, out=first_checksum
         )
         assert on(pty_robot, "start", "--previous").code == 0, "the second one is saved already"
     on(pty_robot, "start", "--previous")
-    pty_robot.ask(lambda robot: robot.supply(is_low=False))
+    pty_robot.ask(lambda robot: robot.set_supply(is_low=False))
     pty_robot.power_cycle()
     assert json.loads(on(pty_robot, "doctor", "--json").out)["robot"]["program"] in (
         first_checksum,

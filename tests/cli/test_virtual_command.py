@@ -214,10 +214,10 @@ def colours(data: bytes) -> dict[str, int]:
         ("box", picture.BOX_COLOUR),
         ("robot", picture.ROBOT_COLOUR),
     ):
-        wanted_bytes = bytes.fromhex(colour[1:])
+        expected_bytes = bytes.fromhex(colour[1:])
         colors[name] = sum(  # the borders of lines are mixed
             count for count, pixel in pixels
-            if max(abs(a - b) for a, b in zip(pixel, wanted_bytes, strict=True)) < 70
+            if max(abs(a - b) for a, b in zip(pixel, expected_bytes, strict=True)) < 70
         )  # fmt: skip
     return colors
 

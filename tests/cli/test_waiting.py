@@ -128,11 +128,11 @@ def test_waits_without_news_are_one_silence(
     monkeypatch.setattr(progress, "monotonic", lambda: now_s)
     quiet_notice = progress.RepeatedWaitNotice("waits", is_seen=True)
 
-    def wait_times(count: int, each_s: float) -> str:
+    def wait_times(count: int, wait_s: float) -> str:
         nonlocal now_s
         for _ in range(count):
             quiet_notice.begin()
-            end_s = now_s + each_s
+            end_s = now_s + wait_s
             while now_s < end_s:
                 now_s += 0.1
                 quiet_notice.poll()
@@ -172,19 +172,19 @@ def test_a_bar_writes_only_changes_and_leaves_nothing(
         now_s += rng.choice((0.0, 0.02, 0.1))
         if rng.random() < 0.2:
             bar.end()
-            wanted_text = ""
+            expected_text = ""
         else:
             done_count = rng.randint(0, total)
             bar.draw(done_count)
             percent = f"{min(100 * done_count // total, 99)} %" if total else ""
             is_late = now_s - 100 >= progress.DRAW_DELAY_S and percent != newest
-            wanted_text = percent if is_late else line
-            newest = wanted_text or newest
+            expected_text = percent if is_late else line
+            newest = expected_text or newest
         output = capsys.readouterr().err
-        assert bool(output) == (wanted_text != line)
+        assert bool(output) == (expected_text != line)
         shown_line = output.split("\r")[-1].strip() if output else line
-        assert shown_line.rpartition("] ")[2].strip() == wanted_text
-        line = wanted_text
+        assert shown_line.rpartition("] ")[2].strip() == expected_text
+        line = expected_text
 
 
 def test_received_bytes_may_come_from_a_late_robot(monkeypatch: pytest.MonkeyPatch) -> None:

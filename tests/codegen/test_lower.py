@@ -157,15 +157,15 @@ JUMPS = [
 ]
 
 
-@pytest.mark.parametrize(("text", "most_count", "name"), JUMPS)
-def test_a_jump_is_short_as_long_as_it_reaches(text: str, most_count: int, name: str) -> None:
+@pytest.mark.parametrize(("text", "max_count", "name"), JUMPS)
+def test_a_jump_is_short_as_long_as_it_reaches(text: str, max_count: int, name: str) -> None:
     def jump(count: int) -> str:
         rows = instructions(text.format("S;" * count))
         return next(word for word in (line.split()[0] for line in rows)
                     if word in (name, name + "_FAR"))  # fmt: skip
 
-    assert jump(most_count) == name
-    assert jump(most_count + 1) == name + "_FAR"
+    assert jump(max_count) == name
+    assert jump(max_count + 1) == name + "_FAR"
 
 
 @pytest.mark.parametrize("count", [0, 249, 250, 252, 253, 254, 255, 256, 300, 700])

@@ -52,10 +52,10 @@ class Spec:
             for k, *row in rows_by_word.get("readings", [])
         }
         numbers = {name: int(rows_by_word[name][0][0]) for name in ("seed", "begin", "until")}
-        every = [int(number) for number in rows_by_word["every"][0]]
+        intervals_ms = [int(number) for number in rows_by_word["every"][0]]
 
         def late(waited_ms: int, reached: int) -> int:
-            return -reached % every[min(waited_ms, len(every)) - 1]
+            return -reached % intervals_ms[min(waited_ms, len(intervals_ms)) - 1]
 
         delays_by_sensor = {
             int(k): tuple(map(int, times)) for k, *times in rows_by_word.get("slow", [])

@@ -83,8 +83,8 @@ def test_a_machine_in_cpp_agrees(name: str) -> None:
 
 
 def is_for(name: str, run: Run, answer: list[str]) -> bool:
-    begin_ms, every_ms = run.schedule
-    if answer[-1].startswith("REFUSED") or len(every_ms) > 1:
+    begin_ms, call_intervals_ms = run.schedule
+    if answer[-1].startswith("REFUSED") or len(call_intervals_ms) > 1:
         return False
     if name in avr.COMPILER_ARGUMENTS:
         sensors, actuators = AVR_DEVICES
@@ -127,9 +127,9 @@ def predict_output(run: Run) -> str:
         return from_ms <= now_ms % period_ms < to_ms
 
     readings, max_ms, max_steps, seed = run.senses
-    (every_ms,) = run.schedule[1]
+    (call_interval_ms,) = run.schedule[1]
     return interpreter.run(
-        run.text, oracle_kit(run.kit), readings, max_ms, max_steps, seed, is_slow, every_ms
+        run.text, oracle_kit(run.kit), readings, max_ms, max_steps, seed, is_slow, call_interval_ms
     )
 
 

@@ -57,7 +57,11 @@ def test_a_sensor_without_readings_has_a_line_without_values() -> None:
     ]
     shown_bytes = compile_text("SHOW(LIGHT_R)", robots.load("tinibot").kit).image
     case = case._replace(
-        devices=TINIBOT, image=shown_bytes, readings_by_sensor={0: ()}, every_ms=(1,), begin_ms=0
+        devices=TINIBOT,
+        image=shown_bytes,
+        readings_by_sensor={0: ()},
+        call_intervals_ms=(1,),
+        begin_ms=0,
     )
     (rows,) = runs(case.request().splitlines(keepends=True))
     assert Spec().answer(rows) == ["0 READ LIGHT_R 0", "0 SHOW 0", "0 DONE"]
@@ -67,7 +71,7 @@ def test_a_sensor_that_is_late_has_a_line_after_the_readings() -> None:
     image = compile_text("SHOW(LIGHT_R + TIME)", robots.load("tinibot").kit).image
     case = machine_cases()[0]._replace(
         devices=TINIBOT, image=image, readings_by_sensor={0: (5000,)},
-        delays_by_sensor={0: (100, 0, 32)}, begin_ms=2**32 - 5, every_ms=(3,), until_ms=99,
+        delays_by_sensor={0: (100, 0, 32)}, begin_ms=2**32 - 5, call_intervals_ms=(3,), until_ms=99,
     )  # fmt: skip
     (rows,) = runs(case.request().splitlines(keepends=True))
     assert rows[-7:-5] == ["readings 0 5000", "slow 0 100 0 32"]
@@ -205,7 +209,7 @@ def test_a_broken_machine_is_reported(
         spec.machine.__dict__.update(vars(patch_oracle(file, old_code, new_code)))
     cases = [case for case in machine_cases() if named_text in case.name and not case.needs]
 
-    def answer_request(request: str, most: int) -> list[str]:
+    def answer_request(request: str, max_line_count: int) -> list[str]:
         try:
             return spec.answer(request.splitlines()[:-1])
         except LookupError:  # the machine has crashed
@@ -237,12 +241,12 @@ def kit_of(case: MachineCase) -> Kit:
     devices: dict[str, list[Device]] = {"sensor": [], "actuator": []}
     speeds = {"speed": 0, "turn": 0}
     for line in case.devices:
-        what, name, *rest = line.split(" ")
-        if what in speeds:
-            speeds[what] = int(name)
+        device_role, name, *rest = line.split(" ")
+        if device_role in speeds:
+            speeds[device_role] = int(name)
             continue
         kind, unit, low, high = rest
-        devices[what].append(Device(name, kind, unit, int(low), int(high)))
+        devices[device_role].append(Device(name, kind, unit, int(low), int(high)))
     sensors, actuators = (tuple(devices) for devices in devices.values())
     return Kit(sensors, actuators, speeds["speed"], speeds["turn"])
 

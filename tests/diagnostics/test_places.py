@@ -124,14 +124,14 @@ PIECES = """
 BLANKS = ("", "", " ", " ", "\t", "\n", "\n", "\r\n", "\r", "\u00a0", "\0", "\x1b", "\u2028")
 
 
-def some_text(dice: random.Random) -> str:
-    count, pieces = dice.choice((1, 3, 10, 40)), PIECES.split()
-    return "".join(dice.choice(pieces) + dice.choice(BLANKS) for _ in range(count))
+def some_text(rng: random.Random) -> str:
+    count, pieces = rng.choice((1, 3, 10, 40)), PIECES.split()
+    return "".join(rng.choice(pieces) + rng.choice(BLANKS) for _ in range(count))
 
 
-def some_characters(dice: random.Random) -> str:
+def some_characters(rng: random.Random) -> str:
     ranges = ((0, 127), (0, 0x2FF), (0x2000, 0x20FF), (0, 0x10FFFF))
-    return "".join(chr(dice.randint(*dice.choice(ranges))) for _ in range(dice.choice((1, 5, 300))))
+    return "".join(chr(rng.randint(*rng.choice(ranges))) for _ in range(rng.choice((1, 5, 300))))
 
 
 def check_messages(compilation: Compilation) -> None:
@@ -160,10 +160,10 @@ def check_messages(compilation: Compilation) -> None:
 @pytest.mark.sampled("seed")
 @pytest.mark.parametrize("seed", range(20))
 def test_any_text_gets_well_formed_messages(seed: int) -> None:
-    dice = random.Random(seed)
+    rng = random.Random(seed)
     for _ in range(50):
-        check_messages(check_text(some_text(dice), KIT))
-        check_messages(check_text(some_characters(dice), KIT))
+        check_messages(check_text(some_text(rng), KIT))
+        check_messages(check_text(some_characters(rng), KIT))
 
 
 @pytest.mark.parametrize(

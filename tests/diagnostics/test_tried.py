@@ -42,7 +42,7 @@ def test_alternatives_for_one_value_are_shown_in_full(
 
 
 @each_row(
-    "program, wanted_text",
+    "program, expected_text",
     [
         ("IF(NO(DISTANCE < 10));S;END_IF", "IF(NOT(DISTANCE < 10));S;END_IF"),
         ("W(5) UNTIL(NÃO(DISTANCE > 9))", "W(5) UNTIL(NOT(DISTANCE > 9))"),
@@ -51,12 +51,14 @@ def test_alternatives_for_one_value_are_shown_in_full(
         ("// robot: grabber\nLED LOW", "// robot: grabber\nLED(FALSE)"),
     ],
 )
-def test_a_word_is_read_with_its_brackets_and_in_its_place(program: str, wanted_text: str) -> None:
+def test_a_word_is_read_with_its_brackets_and_in_its_place(
+    program: str, expected_text: str
+) -> None:
     robot = robot_of(program.encode(), TINIBOT)
     repaired_program = repair_program(
         program, lambda to: compile_source(to.encode(), robot, "", True).diagnostics
     )
-    assert repaired_program.text == wanted_text and not repaired_program.diagnostics_left
+    assert repaired_program.text == expected_text and not repaired_program.diagnostics_left
 
 
 @each_row(
@@ -122,7 +124,7 @@ def test_suggested_programs_keep_the_written_meaning(program: str, fixes: list[s
 
 
 @each_row(
-    "program, wanted_text",
+    "program, expected_text",
     [
         ("AL MISMO TIEMPO\nBEEP(1, 440)\nFIN\nF(2, 60)", "TASK\nBEEP(1, 440)\nEND_TASK\nF(2, 60)"),
         ("AO MESMO TEMPO\nBEEP(1, 440)\nFIM\nF(2, 60)", "TASK\nBEEP(1, 440)\nEND_TASK\nF(2, 60)"),
@@ -131,11 +133,11 @@ def test_suggested_programs_keep_the_written_meaning(program: str, fixes: list[s
         ("WHENEVER DISTANCE < 9\nB(1, 60)\nEND", "WHEN(DISTANCE < 9)\nB(1, 60)\nEND_WHEN"),
     ],
 )
-def test_parallel_work_becomes_a_task(program: str, wanted_text: str) -> None:
+def test_parallel_work_becomes_a_task(program: str, expected_text: str) -> None:
     repaired_program = repair_program(
         program, lambda to: list(compile_source(to.encode(), TINIBOT, "", True).diagnostics)
     )
-    assert (repaired_program.text, repaired_program.diagnostics_left) == (wanted_text, [])
+    assert (repaired_program.text, repaired_program.diagnostics_left) == (expected_text, [])
 
 
 def test_spanish_phrases_for_when_are_suggested() -> None:

@@ -33,12 +33,12 @@ def start_program(text: str, **options: bool) -> tuple[HostFirmware, Session]:
     return robot, session
 
 
-def sequence(robot: HostFirmware, session: Session) -> None:
+def send_stop_sequence(robot: HostFirmware, session: Session) -> None:
     robot.talk(session, 1)
     robot.wait(50, bytes(8))
 
 
-def message(robot: HostFirmware, session: Session) -> None:
+def send_stop_message(robot: HostFirmware, session: Session) -> None:
     session.stop(robot.now_ms)
     robot.talk(session, 300)
 
@@ -48,8 +48,8 @@ def replace_program(robot: HostFirmware, session: Session) -> None:
 
 
 END_ACTIONS: dict[str, Callable[[HostFirmware, Session], object]] = {
-    "the stop sequence": sequence,
-    "a stop of the computer": message,
+    "the stop sequence": send_stop_sequence,
+    "a stop of the computer": send_stop_message,
     "the button": lambda robot, session: robot.push(),
     "a lost link": lambda robot, session: robot.wait(1200),
     "nobody connected": lambda robot, session: robot.step(flags=8),
@@ -81,7 +81,7 @@ def test_a_normal_end_keeps_the_actuators_and_a_fault_releases_them(
     robot.talk(session, 500)
     assert ("ACTUATORS OFF" in "".join(robot.did)) == lets_go
     assert any("FINISHED" in line or "FAULTED" in line for line in robot.did)
-    sequence(robot, session)  # a stop also reaches a robot at rest
+    send_stop_sequence(robot, session)  # a stop also reaches a robot at rest
     assert "ACTUATORS OFF" in "".join(robot.did)
 
 

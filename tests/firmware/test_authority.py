@@ -39,7 +39,7 @@ def test_a_stranger_can_only_watch_and_stop() -> None:
         assert table.outcome(stranger, is_open) == "OK"
     assert state_of(table, stranger) == STATE_RUNNING
     stranger.stop(table.robot.now_ms)
-    table.pass_time(stranger, 50)
+    table.advance_time(stranger, 50)
     assert state_of(table, stranger) == STATE_STOPPED
     assert table.robot.is_latched
     assert table.outcome(stranger, stranger.clear()) == "NOT_OWNER"
@@ -57,8 +57,8 @@ def test_every_request_is_classified_by_authority() -> None:
         payload = bytes(sum(field.least_bytes for field in message.request))
         status = table.ask_unsealed(stranger, message.name, payload)[0]
         has_it = message.name not in RADIO_MESSAGES  # `test_esp32_wifi.py` tests those with a radio
-        wanted_status = STATUSES["NOT_OWNER" if has_it else "UNKNOWN_MESSAGE"]
-        assert status == wanted_status, message.name
+        expected_status = STATUSES["NOT_OWNER" if has_it else "UNKNOWN_MESSAGE"]
+        assert status == expected_status, message.name
     assert state_of(table, stranger) == STATE_RUNNING
 
 
@@ -69,12 +69,12 @@ def test_authority_ends_with_its_connection_and_is_proved_again(ending: str) -> 
     table, keys = OwnedRobot(), Keys()
     session = table.claim_session(keys)
     session._handshake._keys = None  # without a key, it cannot authenticate
-    table.pass_time(None, 1900)
+    table.advance_time(None, 1900)
     assert table.outcome(session, session.trim()) == "OK"
     if ending == "silence":
-        table.pass_time(None, 2050)
+        table.advance_time(None, 2050)
     elif ending == "STATE":
-        table.pass_time(None, 10, DISCONNECTED)
+        table.advance_time(None, 10, DISCONNECTED)
     else:
         session = table.session(nonce=9)
         assert table.outcome(session, session.hello()) == "OK"
@@ -88,7 +88,7 @@ def test_a_replayed_session_grants_nothing() -> None:
     table.claim_session(keys)
     next_session = table.session(keys, nonce=4)
     recorded_bytes, _ = table.frames(next_session, next_session.upload(image_of("SI|F(1, 80)")))
-    table.pass_time(None, 4000)
+    table.advance_time(None, 4000)
     table.robot.did.clear()
     for _ in range(300):  # the epoch wraps around
         for data in recorded_bytes:
@@ -112,7 +112,7 @@ def test_a_replayed_tag_grants_nothing_in_its_own_epoch() -> None:
     assert (
         status_of_tag(owner, shown_frame.payload[1:]) == STATUSES["NOT_OWNER"]
     )  # twice to one challenge
-    table.pass_time(None, 2100)
+    table.advance_time(None, 2100)
     # without a challenge
     assert status_of_tag(owner, shown_frame.payload[1:]) == STATUSES["NOT_OWNER"]
     assert status_of_tag(owner, b"") == 0
@@ -194,12 +194,12 @@ def send_forged_frames(frames: int, seed: int) -> int:
     """Send recorded, forged and reordered frames to a robot with an owner; return how many of them
     had it drive, start or change. A stop in between is always obeyed.
     """
-    chance = random.Random(seed)
+    rng = random.Random(seed)
     table, keys = OwnedRobot(), Keys()
     table.claim_session(keys)
     owner = table.session(keys, nonce=4)
     recorded_bytes, _ = table.frames(owner, owner.upload(image_of("SI|F(0.1, 80)")))
-    table.pass_time(None, 6000)
+    table.advance_time(None, 6000)
     table.robot.did.clear()
     memory = table.robot.memory()
     accepted_count = 0
@@ -212,26 +212,24 @@ def send_forged_frames(frames: int, seed: int) -> int:
             stopped_event = table.robot.wait(60, bytes(8))
             assert b"\xa2" in stopped_event, (count, stopped_event)  # STOPPED
             table.robot.wait(1100)
-        kind = chance.randrange(3)
+        kind = rng.randrange(3)
         if kind == 0:
-            data = chance.choice(recorded_bytes) + b"\0"
+            data = rng.choice(recorded_bytes) + b"\0"
         else:
-            message = chance.choice(
-                [message for message in BY_NAME.values() if message.number < 32]
-            )
+            message = rng.choice([message for message in BY_NAME.values() if message.number < 32])
             low = sum(field.least_bytes for field in message.request)
             high = sum(field.most_bytes for field in message.request)
-            payload = chance.randbytes(chance.randint(low, high))
+            payload = rng.randbytes(rng.randint(low, high))
             if message.name == "AUTHENTICATE":
-                payload = bytes([chance.randrange(2)]) + chance.randbytes(chance.choice((0, 8)))
+                payload = bytes([rng.randrange(2)]) + rng.randbytes(rng.choice((0, 8)))
             if message.name == "CLAIM":
-                payload = bytes([chance.randrange(2)]) + chance.randbytes(chance.choice((0, 16)))
+                payload = bytes([rng.randrange(2)]) + rng.randbytes(rng.choice((0, 16)))
             thief._seq = (thief._seq + 1) & 0xFF
-            seq = thief._seq if kind == 1 else chance.randrange(256)
+            seq = thief._seq if kind == 1 else rng.randrange(256)
             data = encode_frame(Frame(message.number, seq, thief._epoch, payload))
         sent_bytes = table.robot.step(b"\0" + data)
         accepted_count += sum(grants_key_request(answer) for answer in sent_bytes.split(b"\0"))
-        if chance.randrange(50) == 0:
+        if rng.randrange(50) == 0:
             table.robot.wait(30)
         actions = [line for line in table.robot.did if "MOTORS" in line]
         accepted_count += len(actions)

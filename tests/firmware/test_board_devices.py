@@ -29,7 +29,7 @@ def test_an_echo_is_measured_on_other_pins_of_a_mega(echo: str) -> None:
                      ("right_backward = 10", "right_backward = 40"))  # fmt: skip
     board = start_board(robot, power_program("DISTANCE"))
     pins = robot.board.sensors[2].pins
-    board.echoes(pins["trigger"], pins["echo"], [50 * 2 / 0.0343])
+    board.set_echoes(pins["trigger"], pins["echo"], [50 * 2 / 0.0343])
     board.run_for(START_MS + 80)
     assert board.motors(START_MS + 75)[0] == f"pwm {50 * 653 >> 8}"
 
@@ -62,7 +62,7 @@ def test_a_missing_echo_reads_as_far_away_after_three_times_25_ms(width_us: int)
     text = "SI|IF(DISTANCE = 400);M(10, 0);ENDIF;W(0.04);IF(DISTANCE < 400);M(20, 0);ENDIF;W(5)"
     board = start_board(robot, text)
     pins = robot.board.sensors[2].pins
-    board.echoes(pins["trigger"], pins["echo"], [width_us] * 3 + [50 * 2 / 0.0343])
+    board.set_echoes(pins["trigger"], pins["echo"], [width_us] * 3 + [50 * 2 / 0.0343])
     board.run_for(START_MS + 250)
     level = f"pwm {10 * 653 >> 8}"
     third = 2 * max(30, 0.46 + width_us / 1000)
@@ -84,7 +84,7 @@ def test_a_voltage_is_a_reading(
     name: str, reading: str, channel: int, millivolts: int, power: float
 ) -> None:
     board = start_board(robots.load(name), power_program(reading))
-    board.analog(channel, millivolts)
+    board.set_analog(channel, millivolts)
     board.run_for(START_MS + 10)
     pwm_value = int(board.motors(START_MS + 9)[0].removeprefix("pwm "))
     assert abs(pwm_value - power * 2.55) < 3
@@ -100,7 +100,7 @@ def is_true(robot: Robot, condition: str, set_up: Callable[[Board], object]) -> 
     return level == f"pwm {20 * 653 >> 8}"
 
 
-@pytest.mark.parametrize(("name", "sensor", "pin", "is_high", "expected"), [
+@pytest.mark.parametrize(("name", "sensor", "pin", "is_high", "is_yes"), [
     ("liner", "LINE_L", 15, True, True),
     ("liner", "LINE_R", 16, False, False),
     ("liner", "BUTTON", 12, True, False),
@@ -108,19 +108,19 @@ def is_true(robot: Robot, condition: str, set_up: Callable[[Board], object]) -> 
     ("grabber", "BUTTON", 28, False, True),
 ])  # fmt: skip
 def test_a_level_reads_as_yes_or_no(
-    name: str, sensor: str, pin: int, is_high: bool, expected: bool
+    name: str, sensor: str, pin: int, is_high: bool, is_yes: bool
 ) -> None:
     assert (
-        is_true(robots.load(name), sensor, lambda board: board.level(0, pin, is_high)) == expected
+        is_true(robots.load(name), sensor, lambda board: board.set_level(0, pin, is_high)) == is_yes
     )
 
 
 def test_thresholds_and_thousandths_are_read() -> None:
     """149 of 1023 are slightly more than 1.4565 of 10 V: the half distinguishes the two."""
     workshop = on_board("tinibot", "uno", *WORKSHOP)
-    assert is_true(workshop, "BRIGHT", lambda board: board.analog(2, 2910))
-    assert not is_true(workshop, "BRIGHT", lambda board: board.analog(2, 2950))
-    assert is_true(robots.load("liner"), "BATTERY > 1.456", lambda board: board.analog(7, 729))
+    assert is_true(workshop, "BRIGHT", lambda board: board.set_analog(2, 2910))
+    assert not is_true(workshop, "BRIGHT", lambda board: board.set_analog(2, 2950))
+    assert is_true(robots.load("liner"), "BATTERY > 1.456", lambda board: board.set_analog(7, 729))
 
 
 @pytest.mark.parametrize(("sensor", "channel"), [("LINE_L", 2), ("LINE_M", 1), ("LINE_R", 0)])
@@ -128,7 +128,7 @@ def test_a_line_sensor_is_over_black_from_250_on(sensor: str, channel: int) -> N
     """The threshold is that of ELEGOO's own program."""
     car = robots.load("elegoo4")
     for millivolts, expected in ((1180, False), (1260, True)):
-        is_black = is_true(car, sensor, lambda board, mv=millivolts: board.analog(channel, mv))  # type: ignore[misc]
+        is_black = is_true(car, sensor, lambda board, mv=millivolts: board.set_analog(channel, mv))  # type: ignore[misc]
         assert is_black == expected
 
 
@@ -156,12 +156,12 @@ END_WHEN
 def test_each_task_gets_its_readings_in_time(seed: int) -> None:
     """Whatever other tasks read, none waits longer than a few conversions and a round of the
     tasks."""
-    draw = random.Random(seed)
+    rng = random.Random(seed)
     tasks = []
-    for number in range(draw.randint(2, 4)):
-        reading_programs = [READING_CODE.format(number, draw.choice(["LIGHT_R", "LIGHT_L", "DIM"]))
-                 for _ in range(draw.randint(1, 3))]  # fmt: skip
-        pause = draw.choice(["", "W(0.001)", "W(0.003)", "W(0.01)"])
+    for number in range(rng.randint(2, 4)):
+        reading_programs = [READING_CODE.format(number, rng.choice(["LIGHT_R", "LIGHT_L", "DIM"]))
+                 for _ in range(rng.randint(1, 3))]  # fmt: skip
+        pause = rng.choice(["", "W(0.001)", "W(0.003)", "W(0.01)"])
         tasks.append(f"LOOP(FOREVER)\n{''.join(reading_programs)}{pause}\nEND_LOOP")
     main_task, *other_tasks = tasks[:3]
     text = f"SI|LONGEST = 0;COUNT = 0\n{main_task}\n"
@@ -270,7 +270,7 @@ def test_a_reading_of_the_previous_program_is_not_reused() -> None:
     robot = robots.load("tinibot")
     pins = robot.board.sensors[2].pins
     board = start_board(robot, "SI|W(0.05);M(DISTANCE, 0);W(5)")
-    board.echoes(pins["trigger"], pins["echo"], [2000, 80 * 2 / 0.0343])
+    board.set_echoes(pins["trigger"], pins["echo"], [2000, 80 * 2 / 0.0343])
     board.press(START_MS + 51, START_MS + 100)
     board.press(START_MS + 150, START_MS + 200)
     board.run_for(START_MS + 400)
@@ -304,6 +304,6 @@ def test_interrupts_are_never_off_for_long(name: str) -> None:
     sonar_index = [sensor.driver for sensor in robot.board.sensors].index("hc_sr04")
     pins = robot.board.sensors[sonar_index].pins
     board = start_board(robot, text)
-    board.echoes(pins["trigger"], pins["echo"], [1000])
+    board.set_echoes(pins["trigger"], pins["echo"], [1000])
     board.run_for(START_MS + 200)
     assert 0 < board.quiet_us < 25

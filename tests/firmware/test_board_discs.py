@@ -46,7 +46,7 @@ def counting_board(robot: Robot) -> Board:
     board.watched |= {LEFT_COUNT_REGISTER, RIGHT_COUNT_REGISTER}
     assert robot.board.discs
     for pin in robot.board.discs.pins.values():
-        board.level(0, pin, False)
+        board.set_level(0, pin, False)
     return board
 
 
@@ -73,10 +73,10 @@ def test_each_edge_of_both_discs_counts(name: str) -> None:
     board = counting_board(robot)
     left, right = pins(robot)
     for k in range(20):
-        board.level(30 + 2 * k, left, k % 2 == 0)
-        board.level(30 + 2 * k, right, k % 2 == 0)
+        board.set_level(30 + 2 * k, left, k % 2 == 0)
+        board.set_level(30 + 2 * k, right, k % 2 == 0)
     for k in range(6):
-        board.level(100 + 65.6 * k, left, k % 2 == 0)
+        board.set_level(100 + 65.6 * k, left, k % 2 == 0)
     board.run_for(450)
     assert counts(board, 90) == (20, 20)
     assert counts(board, 445) == (26, 20)
@@ -91,16 +91,16 @@ def test_too_short_pulses_do_not_count(name: str, span_us: float, is_high: bool)
     robot = robots.load("tinibot2", name)
     board = counting_board(robot)
     left, _ = pins(robot)
-    chance = random.Random(5)
-    board.level(25, left, is_high)
+    rng = random.Random(5)
+    board.set_level(25, left, is_high)
     at_ms = 40.0
     for _ in range(30):
-        at_ms += chance.uniform(1, 5)
-        board.level(at_ms, left, not is_high)
-        board.level(at_ms + span_us / 1000, left, is_high)
-    board.level(at_ms + 5, left, not is_high)
+        at_ms += rng.uniform(1, 5)
+        board.set_level(at_ms, left, not is_high)
+        board.set_level(at_ms + span_us / 1000, left, is_high)
+    board.set_level(at_ms + 5, left, not is_high)
     for k in range(3):  # an edge that bounces
-        board.level(at_ms + 12 + 0.03 * k, left, is_high == (k % 2 == 0))
+        board.set_level(at_ms + 12 + 0.03 * k, left, is_high == (k % 2 == 0))
     board.run_for(at_ms + 40)
     assert counts(board, at_ms + 35) == (is_high + 2, 0)
 
@@ -114,10 +114,10 @@ def test_edges_count_again_after_an_endless_glitch(name: str, span_us: float) ->
     left, right = pins(robot)
     pulses = round(40 / (2 * span_us / 1000))
     for k in range(2 * pulses):
-        board.level(30 + k * span_us / 1000, left, k % 2 == 0)
+        board.set_level(30 + k * span_us / 1000, left, k % 2 == 0)
     for k in range(16):
-        board.level(30 + 2.3 * k, right, k % 2 == 0)
-        board.level(80 + 2.3 * k, left, k % 2 == 0)
+        board.set_level(30 + 2.3 * k, right, k % 2 == 0)
+        board.set_level(80 + 2.3 * k, left, k % 2 == 0)
     board.run_for(140)
     assert counts(board, 135) == (16, 16)
 
@@ -133,10 +133,10 @@ def test_two_channels_count_backwards(name: str) -> None:
     states = [(True, False), (True, True), (False, True), (False, False)]
     for k in range(16):  # four holes ahead
         for pin, level in zip((a, b), states[k % 4], strict=True):
-            board.level(30 + 2 * k, pin, level)
+            board.set_level(30 + 2 * k, pin, level)
     for k in range(10):  # and back again
         for pin, level in zip((a, b), states[(2 - k) % 4], strict=True):
-            board.level(100 + 2 * k, pin, level)
+            board.set_level(100 + 2 * k, pin, level)
     board.run_for(150)
     assert counts(board, 90) == (8, 0)
     assert counts(board, 145) == (3, 0)
@@ -185,12 +185,12 @@ def test_moves_are_straight_after_a_wheel_was_held(sketches: Callable[[str], Pat
 def flicker(uno: Uno, hertz: int, milliseconds: int, run_ms: Callable[[int], None]) -> None:
     """Toggle both discs at this rate."""
     half = CYCLES_PER_MS * 1000 // (2 * hertz)
-    cycle, level = uno.cycle, False
+    cycle, is_high = uno.cycle, False
     for _ in range(milliseconds):
         while cycle < uno.cycle + CYCLES_PER_MS:
-            level = not level
+            is_high = not is_high
             for number, pin in enumerate(pins(ROBOT)):
-                uno.drive(f"D{pin}", level, at_cycle=cycle + number * half // 3)
+                uno.drive(f"D{pin}", is_high, at_cycle=cycle + number * half // 3)
             cycle += half
         run_ms(1)
 
@@ -239,13 +239,13 @@ def test_a_nano_with_discs_runs_tasks(sketches: Callable[[str], Path]) -> None:
     eye = f"D{pins['trigger']}", f"D{pins['echo']}"
     text = (ROOT / "examples" / "away.ts").read_text(encoding="utf-8")
     with robot.uno:
-        robot.uno.sonar(*eye, 50)
+        robot.uno.set_sonar_distance(*eye, 50)
         assert robot.until(robot.session.hello()) == OK
         image = image_of(text, ROBOT.kit)
         assert robot.until(robot.session.upload(image)) == OK
         counts = []
         for distance_cm, milliseconds in ((50, 500), (9, 300), (50, 500), (50, 500)):
-            robot.uno.sonar(*eye, distance_cm)
+            robot.uno.set_sonar_distance(*eye, distance_cm)
             robot.run(milliseconds)
             counts.append(
                 tuple(

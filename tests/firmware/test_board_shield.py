@@ -149,8 +149,8 @@ def test_both_motors_of_a_side_run_alike(name: str, chip: str) -> None:
 @pytest.mark.parametrize("seed", range(8))
 def test_no_motor_turns_against_its_side(seed: int) -> None:
     """This holds for any program: in between, a motor is only off, or has one of the two powers."""
-    draw = random.Random(seed)
-    moves = [(draw.choice([-80, -40, 0, 40, 80]), draw.choice([-80, -40, 0, 40, 80]))
+    rng = random.Random(seed)
+    moves = [(rng.choice([-80, -40, 0, 40, 80]), rng.choice([-80, -40, 0, 40, 80]))
              for _ in range(12)]  # fmt: skip
     text = "SI|" + ";".join(f"M({left}, {right});W(0.02)" for left, right in moves)
     sides = SIDES["crossed"]
@@ -178,7 +178,7 @@ def test_nothing_moves_before_the_button_nor_after_a_stop(chip: str) -> None:
     extra_code = STOPS if chip == "uno" else ""
     board = start_board(robot, "SI|LOOP(FOREVER);M(80, 80);M(-80, 80);END_LOOP", extra_code)
     if chip == "uno":
-        board.level(START_MS + 50.123, 19, True)
+        board.set_level(START_MS + 50.123, 19, True)
     board.press(400, 450)
     board.run_for(430)
     states = motor_states(board)

@@ -31,7 +31,7 @@ def board_with_distances(
     trigger, echo = sonar_pins(robot)
     board = start_board(robot, text, extra_code)
     board.watch(trigger)
-    board.echoes(trigger, echo, [distance_cm * US_PER_CM for distance_cm in distances_cm])
+    board.set_echoes(trigger, echo, [distance_cm * US_PER_CM for distance_cm in distances_cm])
     return board
 
 
@@ -48,11 +48,11 @@ def test_pings_are_30_ms_apart_and_measure_the_distance(name: str, distance_cm: 
     """A program that only measures does not measure more often. A sensor wants 10 us, and the loop
     does not wait for it."""
     robot = robots.load(name)
-    offset_usnar_index = [sensor.driver for sensor in robot.board.sensors].index("hc_sr04")
-    trigger, echo = sonar_pins(robot, offset_usnar_index)
+    sonar_index = [sensor.driver for sensor in robot.board.sensors].index("hc_sr04")
+    trigger, echo = sonar_pins(robot, sonar_index)
     board = start_board(robot, "SI|LOOP(FOREVER);M(DISTANCE, 0);END_LOOP")
     board.watch(trigger)
-    board.echoes(trigger, echo, [distance_cm * US_PER_CM])
+    board.set_echoes(trigger, echo, [distance_cm * US_PER_CM])
     board.run_for(START_MS + 400)
     gaps = [b - a for a, b in pairwise(ping_starts_ms(board, trigger))]
     assert len(gaps) >= 10
@@ -111,7 +111,7 @@ def test_a_start_forgets_readings_but_not_the_spacing(after_ms: float) -> None:
     plain_board = board_with_distances(text, 20, 70).run_for(START_MS + 40)
     first_ping_ms = plain_board.edges(trigger)[0] / MS
     board = board_with_distances(text, 20, 70, robot=robot, extra_code=RESTART_CODE)
-    board.level(first_ping_ms + after_ms, 19, True)
+    board.set_level(first_ping_ms + after_ms, 19, True)
     board.run_for(START_MS + 160)
     first, second, *others = ping_starts_ms(board, trigger)
     assert SPACING_MS <= second - first < SPACING_MS + 2
@@ -148,7 +148,7 @@ def test_two_sensors_never_hear_each_other(text: str) -> None:
     for number, distances in rows:
         trigger, echo = sonar_pins(robot, number)
         board.watch(trigger)
-        board.echoes(trigger, echo, [distance * US_PER_CM for distance in distances])
+        board.set_echoes(trigger, echo, [distance * US_PER_CM for distance in distances])
     board.run_for(START_MS + 600)
     starts_ms = [ping_starts_ms(board, sonar_pins(robot, number)[0]) for number, _ in rows]
     all_starts_ms = sorted(ms for times in starts_ms for ms in times)
@@ -192,7 +192,7 @@ def find_glitches(width_us: float) -> list[tuple[int, int]]:
     board = start_board(robot, "SI|LOOP(FOREVER);M(DISTANCE, 0);W(0.032);END_LOOP")
     board.watch(trigger)
     rows = [(0.0, 0.0)] * FIRST_SAMPLES + [(phase, width_us) for phase in PHASES]
-    board.echoes(trigger, echo, [ECHO_US] * (len(rows) + 1), rows)
+    board.set_echoes(trigger, echo, [ECHO_US] * (len(rows) + 1), rows)
     times = ping_starts_ms(board.run_for(START_MS + 33 * len(rows)), trigger)[FIRST_SAMPLES:]
     gaps = [b - a for a, b in pairwise(times)]
     assert max(gaps) < 33  # no reading came late
@@ -221,8 +221,8 @@ def test_a_glitch_without_an_echo_is_far_away() -> None:
     text = "SI|IF(DISTANCE = 400);M(10, 0);ELSE;M(90, 0);ENDIF;W(5)"
     board = board_with_distances(text, 0)
     for ms in (1.0, 3.0, 10.0, 20.0):
-        board.level(START_MS + ms, echo, True)
-        board.level(START_MS + ms + 0.06, echo, False)
+        board.set_level(START_MS + ms, echo, True)
+        board.set_level(START_MS + ms + 0.06, echo, False)
     board.run_for(START_MS + 110)
     assert read_power_cm(board, START_MS + 100) == 10
 
@@ -277,8 +277,8 @@ def test_a_briefly_high_line_is_not_a_hung_sensor() -> None:
     robot = robots.load("tinibot")
     board = board_with_distances(text, 50, robot=robot)
     for number in range(200):
-        board.level(START_MS + 400 + 3 * number, sonar_pins(robot)[1], True)
-        board.level(START_MS + 401.5 + 3 * number, sonar_pins(robot)[1], False)
+        board.set_level(START_MS + 400 + 3 * number, sonar_pins(robot)[1], True)
+        board.set_level(START_MS + 401.5 + 3 * number, sonar_pins(robot)[1], False)
     board.run_for(START_MS + 1200)
     assert {read_power_cm(board, ms) for ms in driven_ms(board, 1)} == {10}
 
@@ -299,8 +299,8 @@ def test_one_wrong_sample_in_fifty_never_becomes_a_reading(seed: int) -> None:
     for ms in readings:
         number = sum(sent < ms for sent in times) - 1
         cm = 2 * int(board.motors(ms)[0].removeprefix("pwm ")) / 2.55
-        most_cm = max(4, 0.2 * true[number] + 3)
-        assert abs(cm - true[number]) < most_cm, (number, heard_cm[number - 2 : number + 1])
+        max_error_cm = max(4, 0.2 * true[number] + 3)
+        assert abs(cm - true[number]) < max_error_cm, (number, heard_cm[number - 2 : number + 1])
 
 
 @pytest.mark.sampled("number", keep=2)

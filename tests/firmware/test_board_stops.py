@@ -78,7 +78,7 @@ def test_a_program_that_is_being_stopped_sets_nothing() -> None:
     """The interrupt has turned the motors off, and the main loop does not know it yet."""
     stop = "ISR(PCINT0_vect) { tiniscript::motors_stop(); }"
     board = busy(grabber_robot(), "SI|LOOP(FOREVER);LED(TRUE);LED(FALSE);END_LOOP", interrupt(stop))
-    board.level(START_MS + 50.123, WIRE, True)
+    board.set_level(START_MS + 50.123, WIRE, True)
     board.run_for(START_MS + 80)
     edges = [cycle / MS - START_MS for cycle in board.edges(LED)]
     assert [at_ms for at_ms in edges if at_ms < 50.1]
@@ -92,7 +92,7 @@ def test_a_hanging_main_loop_turns_everything_off(holds_position: bool) -> None:
     board = busy(
         grabber_robot(holds_position), "SI|GRIPPER(90);LED(TRUE);W(5)", interrupt(HANGING_HANDLER)
     )
-    board.level(START_MS + 50, WIRE, True)
+    board.set_level(START_MS + 50, WIRE, True)
     board.run_for(START_MS + 170)
     assert board.pin(LED, START_MS + 140) == "high"
     assert board.pin(LED, START_MS + 160) == "low"

@@ -61,7 +61,7 @@ def list_settings(robot: Uno, since_cycle: int) -> list[MotorSetting]:
 @each_board
 def test_the_robot_backs_away_from_an_obstacle_and_drives_on(robot: Uno) -> None:
     """It does so each time, and if the obstacle has gone in the meantime, it drives on at once."""
-    robot.sonar("trigger", "echo", 80)
+    robot.set_sonar_distance("trigger", "echo", 80)
     wired_uno = computer(robot)
     send(wired_uno, AWAY_PROGRAM, is_detached=True)
     wired_uno.run(500)
@@ -69,9 +69,9 @@ def test_the_robot_backs_away_from_an_obstacle_and_drives_on(robot: Uno) -> None
     for wait_ms in (0, 7):
         wired_uno.run(wait_ms)
         near_cycle = robot.cycle
-        robot.sonar("trigger", "echo", 10)
+        robot.set_sonar_distance("trigger", "echo", 10)
         wired_uno.run(700)
-        robot.sonar("trigger", "echo", 80)
+        robot.set_sonar_distance("trigger", "echo", 80)
         wired_uno.run(800)
         settings = list_settings(robot, near_cycle)
         assert [setting[1:] for setting in settings] == [(-60, -60), (60, -60), (60, 60)]
@@ -82,7 +82,7 @@ def test_the_robot_backs_away_from_an_obstacle_and_drives_on(robot: Uno) -> None
 
 @each_board
 def test_a_missing_echo_delays_no_other_task(robot: Uno) -> None:
-    robot.sonar("trigger", "echo", None)
+    robot.set_sonar_distance("trigger", "echo", None)
     wired_uno = computer(robot)
     heard_count = len(robot.received_bytes)
     send(wired_uno, "LOOP(4);F(0.2, 60);B(0.2, 60);END_LOOP;WHEN(DISTANCE < 15);S;END_WHEN",
@@ -100,20 +100,20 @@ def test_a_missing_echo_delays_no_other_task(robot: Uno) -> None:
 @pytest.mark.parametrize("later_ms", [100, 200, 500, 5000])
 def test_an_echo_before_an_interruption_ends_no_move(later_ms: int, robot: Uno) -> None:
     """A ping is under way when a WHEN takes the motors: after that a new one is heard."""
-    robot.sonar("trigger", "echo", 350)
+    robot.set_sonar_distance("trigger", "echo", 350)
     wired_uno = computer(robot)
     backing_when = f"WHEN(LIGHT_R + LIGHT_L > 1000);B({later_ms / 1000}, 60);END_WHEN"
     send(wired_uno, f"F(FOREVER, 60)UNTIL(DISTANCE < 300);S;{backing_when}", is_detached=True)
     wired_uno.run(300)
     robot.run_until("trigger", "low", 60)
     robot.run_ms(35)
-    robot.sonar("trigger", "echo", 250)  # distance of the next ping
-    robot.analog("A0", 1023)
+    robot.set_sonar_distance("trigger", "echo", 250)  # distance of the next ping
+    robot.set_analog("A0", 1023)
     begun_pin_change = robot.run_until("trigger", "low", 60)
     wired_uno.run(6)
     assert list_settings(robot, begun_pin_change.cycle)[0][1:] == (-60, -60)
-    robot.sonar("trigger", "echo", 350)
-    robot.analog("A0", 0)
+    robot.set_sonar_distance("trigger", "echo", 350)
+    robot.set_analog("A0", 0)
     wired_uno.run(later_ms + 200)
     assert [setting[1:] for setting in list_settings(robot, begun_pin_change.cycle)] == [
         (-60, -60),

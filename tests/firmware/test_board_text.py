@@ -111,7 +111,7 @@ def test_a_line_starts_the_motors_and_s_stops_them(robot: Uno) -> None:
 
 @each_board
 def test_the_obstacle_program_runs_line_by_line(robot: Uno) -> None:
-    robot.sonar("trigger", "echo", 40)
+    robot.set_sonar_distance("trigger", "echo", 40)
     *lines, last_line = OBSTACLE_LINES
     for line in lines:
         assert type_and_listen(robot, f"{line}\r\n", 40) == []
@@ -119,7 +119,7 @@ def test_the_obstacle_program_runs_line_by_line(robot: Uno) -> None:
     assert type_and_listen(robot, f"{last_line}\r", 40) == ["// OK"]
     assert states(robot) == FORWARD
     assert 0 < time_since_line_end_ms(robot) <= PROGRAM_MS
-    robot.sonar("trigger", "echo", 5)
+    robot.set_sonar_distance("trigger", "echo", 5)
     robot.run_ms(1500)
     assert states(robot)["left forward"] == "high" and states(robot)["right backward"] == "high"
 

@@ -67,7 +67,7 @@ def test_nothing_moves_before_the_button(name: str) -> None:
     """Motor pins are low within a few cycles of the reset, and stay it; a press alone is not it."""
     robot = robot_with(SERVOS) if name == "servos" else robot_with_driver(name)
     board = Board(robot, MOVES_PROGRAM)
-    board.level(PRESS_MS, robot.board.start_button, False)
+    board.set_level(PRESS_MS, robot.board.start_button, False)
     board.run_for(400)
     assert board.list_motor_changes() == []
     assert board.motors(60 / MS) == ("low",) * len(board.motor_pins())
@@ -118,7 +118,7 @@ STOP_US = 20.0
 def test_the_interrupt_turns_the_pins_off_and_nothing_turns_them_on(name: str) -> None:
     text = "SI|LOOP(FOREVER);M(80, 80);M(-80, 80);END_LOOP"
     board = start_board(robot_with_driver(name), text, STOPS)
-    board.level(START_MS + 50.123, STOP_PIN, True)
+    board.set_level(START_MS + 50.123, STOP_PIN, True)
     board.press(500, 600)
     board.press(700, 800)
     board.run_for(850)

@@ -38,8 +38,8 @@ MAIN_TASK = 4  # the last task
 BAD_VALUE = STATUSES["BAD_VALUE"]
 
 
-def state(it: DebuggedRobot) -> int:
-    return it.robot.complete(it.session, it.session.status()).state
+def state(debugged: DebuggedRobot) -> int:
+    return debugged.robot.complete(debugged.session, debugged.session.status()).state
 
 
 def test_a_robot_announces_that_it_can_halt() -> None:
@@ -49,34 +49,38 @@ def test_a_robot_announces_that_it_can_halt() -> None:
 
 
 def test_a_program_halts_before_an_instruction_and_continues() -> None:
-    it = debug(DRIVE_PROGRAM, SECOND_MOVE_OFFSET)
-    assert it.halt() == Halt(SECOND_MOVE_OFFSET, MAIN_TASK)
-    assert it.variables()[:2] == [1000, 0]
-    assert drives(it.robot.did) == [], "nothing of the instruction is done"
-    it.talk(3000)
-    assert it.is_halted() and state(it) == STATE_RUNNING and drives(it.robot.did) == []
-    assert it.go()
-    assert it.halt() is None
-    motor_lines = drives(it.robot.did)
+    debugged = debug(DRIVE_PROGRAM, SECOND_MOVE_OFFSET)
+    assert debugged.halt() == Halt(SECOND_MOVE_OFFSET, MAIN_TASK)
+    assert debugged.variables()[:2] == [1000, 0]
+    assert drives(debugged.robot.did) == [], "nothing of the instruction is done"
+    debugged.talk(3000)
+    assert (
+        debugged.is_halted()
+        and state(debugged) == STATE_RUNNING
+        and drives(debugged.robot.did) == []
+    )
+    assert debugged.go()
+    assert debugged.halt() is None
+    motor_lines = drives(debugged.robot.did)
     assert [line.split(maxsplit=1)[1] for line in motor_lines] == [
         "MOTORS 80 80", "MOTORS 0 0", "MOTORS -60 -60", "MOTORS 0 0"
     ]  # fmt: skip
     times = [int(line.split()[0]) for line in motor_lines]
     assert times[1] - times[0] == times[3] - times[2] == 1000
-    assert not it.go(), "nothing is halted any more"
+    assert not debugged.go(), "nothing is halted any more"
 
 
 def test_a_step_is_a_statement() -> None:
-    it = debug(DRIVE_PROGRAM, 0)
-    assert it.halt() == Halt(0, MAIN_TASK)
+    debugged = debug(DRIVE_PROGRAM, 0)
+    assert debugged.halt() == Halt(0, MAIN_TASK)
     lines = []
-    while it.step():
-        halt = it.halt()
+    while debugged.step():
+        halt = debugged.halt()
         if halt is None:
             break
         lines.append(halt.offset)
     assert lines == [2, 5, 7, 10]
-    assert it.robot.did[-1].endswith("FINISHED")
+    assert debugged.robot.did[-1].endswith("FINISHED")
 
 
 @pytest.mark.parametrize(
@@ -89,29 +93,31 @@ def test_a_step_is_a_statement() -> None:
     ],
 )
 def test_an_offset_inside_a_statement_is_not_a_place(text: str) -> None:
-    it = DebuggedRobot(text)
-    starts = statement_starts(it.image.code)
-    for offset in range(len(it.image.code) + 3):
-        assert it.places(offset) == (OK if offset in starts else BAD_VALUE), offset
-    assert it.places(*starts[:4]) == OK
-    assert it.places(*starts[:3], 1000) == BAD_VALUE
+    debugged = DebuggedRobot(text)
+    starts = statement_starts(debugged.image.code)
+    for offset in range(len(debugged.image.code) + 3):
+        assert debugged.places(offset) == (OK if offset in starts else BAD_VALUE), offset
+    assert debugged.places(*starts[:4]) == OK
+    assert debugged.places(*starts[:3], 1000) == BAD_VALUE
 
 
 def test_invalid_breakpoint_requests_are_refused() -> None:
     robot, session = switched_on(), computer()
     assert robot.until(session, session.break_at((0,))) == STATUSES["NO_PROGRAM"]
-    it = DebuggedRobot(DRIVE_PROGRAM)
+    debugged = DebuggedRobot(DRIVE_PROGRAM)
     for payload in (b"\0", b"\0\0\0", b"\0" * 10):
-        assert bytes((STATUSES["BAD_LENGTH"],)) in answer(it, "BREAK", payload)
-    assert it.robot.until(it.session, it.session.resume(2)) == BAD_VALUE
-    assert it.robot.until(it.session, it.session.read_variables(32)) == BAD_VALUE
+        assert bytes((STATUSES["BAD_LENGTH"],)) in answer(debugged, "BREAK", payload)
+    assert debugged.robot.until(debugged.session, debugged.session.resume(2)) == BAD_VALUE
+    assert debugged.robot.until(debugged.session, debugged.session.read_variables(32)) == BAD_VALUE
 
 
-def answer(it: DebuggedRobot, name: str, payload: bytes) -> bytes:
+def answer(debugged: DebuggedRobot, name: str, payload: bytes) -> bytes:
     """Return the robot's answer to a request that no session sends."""
-    it.session._seq += 1
-    frame = Frame(BY_NAME[name].number, it.session._seq & 255, it.session._epoch, payload)
-    return it.robot.step(b"\0" + encode_frame(frame))
+    debugged.session._seq += 1
+    frame = Frame(
+        BY_NAME[name].number, debugged.session._seq & 255, debugged.session._epoch, payload
+    )
+    return debugged.robot.step(b"\0" + encode_frame(frame))
 
 
 # -- code that never sees a trap -----------------------------------------------------------------
@@ -122,22 +128,22 @@ TASK_FROM_OPERAND = (
 
 
 def test_a_start_finds_the_tasks_of_the_program_and_no_others() -> None:
-    it = debug(TASK_FROM_OPERAND, 0)
-    assert it.halt() == Halt(0, MAIN_TASK)
-    assert [state for state, _, _ in it.tasks()[:MAIN_TASK]] == [0] * MAIN_TASK
-    it.go()
-    it.start()
-    assert it.halt() == Halt(0, MAIN_TASK), "the next start, with places set"
-    assert [state for state, _, _ in it.tasks()[:MAIN_TASK]] == [0] * MAIN_TASK
+    debugged = debug(TASK_FROM_OPERAND, 0)
+    assert debugged.halt() == Halt(0, MAIN_TASK)
+    assert [state for state, _, _ in debugged.tasks()[:MAIN_TASK]] == [0] * MAIN_TASK
+    debugged.go()
+    debugged.start()
+    assert debugged.halt() == Halt(0, MAIN_TASK), "the next start, with places set"
+    assert [state for state, _, _ in debugged.tasks()[:MAIN_TASK]] == [0] * MAIN_TASK
 
 
 def test_a_halted_program_is_fetched_as_it_was_sent() -> None:
-    it = debug(DRIVE_PROGRAM, 0, SECOND_MOVE_OFFSET, 5, 7)
-    assert it.halt()
-    assert fetch_image(it.robot, it.session)[15:] == it.image.code
-    it.step()
-    assert it.halt()
-    assert fetch_image(it.robot, it.session)[15:] == it.image.code
+    debugged = debug(DRIVE_PROGRAM, 0, SECOND_MOVE_OFFSET, 5, 7)
+    assert debugged.halt()
+    assert fetch_image(debugged.robot, debugged.session)[15:] == debugged.image.code
+    debugged.step()
+    assert debugged.halt()
+    assert fetch_image(debugged.robot, debugged.session)[15:] == debugged.image.code
 
 
 def test_a_program_that_is_halted_is_saved_as_it_was_sent() -> None:
@@ -154,31 +160,33 @@ def test_a_program_that_is_halted_is_saved_as_it_was_sent() -> None:
 
 
 def test_a_place_is_reported_with_the_programs_checksum() -> None:
-    it = debug(DRIVE_PROGRAM, SECOND_MOVE_OFFSET)
-    assert it.halt()
-    it.session.tells_places = True
-    events = it.talk(1000)
+    debugged = debug(DRIVE_PROGRAM, SECOND_MOVE_OFFSET)
+    assert debugged.halt()
+    debugged.session.tells_places = True
+    events = debugged.talk(1000)
     assert [(e.program, e.offset) for e in events if e.name == "PLACE"] == [
-        (it.image.checksum, SECOND_MOVE_OFFSET)
+        (debugged.image.checksum, SECOND_MOVE_OFFSET)
     ]
 
 
 def test_a_fault_is_reported_for_the_original_image() -> None:
-    it = debug("SI|N = 0;SHOW(1 / N)", 0, SECOND_MOVE_OFFSET)
-    assert it.halt() == Halt(0, MAIN_TASK)
-    it.step()
-    assert it.halt() == Halt(SECOND_MOVE_OFFSET, MAIN_TASK)
-    it.go()
-    fault = it.until(lambda event: event.name == "FAULT")
-    assert isinstance(fault, FaultEvent) and fault.program == it.image.checksum
+    debugged = debug("SI|N = 0;SHOW(1 / N)", 0, SECOND_MOVE_OFFSET)
+    assert debugged.halt() == Halt(0, MAIN_TASK)
+    debugged.step()
+    assert debugged.halt() == Halt(SECOND_MOVE_OFFSET, MAIN_TASK)
+    debugged.go()
+    fault = debugged.until(lambda event: event.name == "FAULT")
+    assert isinstance(fault, FaultEvent) and fault.program == debugged.image.checksum
 
 
 def test_the_board_finds_the_same_code_at_each_start_and_while_it_runs() -> None:
     """The robot for tests looks at the code that runs after each tick: CHANGED, UNVERIFIED."""
-    it = debug("SI|LOOP(5);F(0.1, 50) UNTIL(DISTANCE < 5);SHOW(1);END_LOOP", 0, SECOND_MOVE_OFFSET)
-    while it.halt():
-        it.step()
-    assert not [line for line in it.robot.did if "CHANGED" in line or "UNVERIFIED" in line]
+    debugged = debug(
+        "SI|LOOP(5);F(0.1, 50) UNTIL(DISTANCE < 5);SHOW(1);END_LOOP", 0, SECOND_MOVE_OFFSET
+    )
+    while debugged.halt():
+        debugged.step()
+    assert not [line for line in debugged.robot.did if "CHANGED" in line or "UNVERIFIED" in line]
 
 
 # -- ends of a run ---------------------------------------------------------------------------------
@@ -199,21 +207,21 @@ RUN_ENDS = (
 
 @pytest.mark.parametrize("way", RUN_ENDS)
 def test_whatever_ends_a_run_also_ends_a_halted_one(way: str) -> None:
-    it = debug("SI|LOOP(FOREVER);F(0.2, 80);SHOW(1);END_LOOP", 1)
-    robot, session = it.robot, it.session
-    assert it.halt() == Halt(1, MAIN_TASK)
+    debugged = debug("SI|LOOP(FOREVER);F(0.2, 80);SHOW(1);END_LOOP", 1)
+    robot, session = debugged.robot, debugged.session
+    assert debugged.halt() == Halt(1, MAIN_TASK)
     expected = STATE_IDLE
     if way == "stop":
         session.stop(robot.now_ms)
-        assert it.until(lambda event: event.name == "STOPPED")
+        assert debugged.until(lambda event: event.name == "STOPPED")
         expected = STATE_STOPPED
     elif way == "button":
         robot.push()
-        assert it.until(lambda event: event.name == "STOPPED")
+        assert debugged.until(lambda event: event.name == "STOPPED")
         expected = STATE_STOPPED
     elif way == "message":
         session.end_run(session.run or 0, robot.now_ms)
-        it.talk(100)
+        debugged.talk(100)
         expected = STATE_STOPPED
     elif way == "lost":
         robot.wait(1100)
@@ -225,72 +233,77 @@ def test_whatever_ends_a_run_also_ends_a_halted_one(way: str) -> None:
         assert robot.until(session, session.upload(image_of("SB|SHOW(1)"), saves=False)) == OK
     elif way == "live":
         assert robot.until(session, session.live(image_of("SI|SHOW(7)").code)) == OK
-        assert it.until(lambda event: event.name == "DONE")
+        assert debugged.until(lambda event: event.name == "DONE")
     elif way == "start":
         assert robot.until(session, session.start()) == OK
-        assert it.halt() == Halt(1, MAIN_TASK), "it begins anew, and halts there again"
+        assert debugged.halt() == Halt(1, MAIN_TASK), "it begins anew, and halts there again"
         expected = STATE_RUNNING
     elif way == "hello":
-        it.session = computer(99)
-        assert robot.until(it.session, it.session.hello()) == OK
+        debugged.session = computer(99)
+        assert robot.until(debugged.session, debugged.session.hello()) == OK
     elif way == "text":
         robot.wait(5, b"\0")
         robot.wait(1200)
         robot.wait(100, b"SI|W(0.01)\n")
-    assert state(it) == expected
+    assert state(debugged) == expected
     assert drives(robot.did) == [], "no motor has turned"
     if way not in ("program", "start", "text", "hello", "live"):
-        assert fetch_image(robot, it.session)[15:] == it.image.code
+        assert fetch_image(robot, debugged.session)[15:] == debugged.image.code
 
 
 @pytest.mark.parametrize("way", ["stop", "done", "start"])
 @pytest.mark.parametrize("halted_ms", [100, 3000])
 def test_a_run_after_a_halted_one_has_its_own_clock(way: str, halted_ms: int) -> None:
-    it = debug("SI|W(0.5);SHOW(TIME)", 0)
-    assert it.halt() == Halt(0, MAIN_TASK)
-    it.talk(halted_ms)
+    debugged = debug("SI|W(0.5);SHOW(TIME)", 0)
+    assert debugged.halt() == Halt(0, MAIN_TASK)
+    debugged.talk(halted_ms)
     if way == "stop":
-        it.session.stop(it.robot.now_ms)
-        assert it.until(lambda event: event.name == "STOPPED")
-        assert it.robot.until(it.session, it.session.clear()) == OK
+        debugged.session.stop(debugged.robot.now_ms)
+        assert debugged.until(lambda event: event.name == "STOPPED")
+        assert debugged.robot.until(debugged.session, debugged.session.clear()) == OK
     elif way == "done":
-        it.go()
-        assert it.until(lambda event: event.name == "DONE")
-    assert it.places() == OK
-    began_ms = it.robot.now_ms
-    it.start()
-    shown_left_event = it.until(lambda event: event.name == "SHOW")
+        debugged.go()
+        assert debugged.until(lambda event: event.name == "DONE")
+    assert debugged.places() == OK
+    began_ms = debugged.robot.now_ms
+    debugged.start()
+    shown_left_event = debugged.until(lambda event: event.name == "SHOW")
     assert isinstance(shown_left_event, ShownEvent) and shown_left_event.value == 500
-    assert it.robot.now_ms - began_ms < 600
+    assert debugged.robot.now_ms - began_ms < 600
 
 
 def test_the_button_starts_the_verified_program_which_halts_again() -> None:
-    it = debug("SI|F(0.2, 80);SHOW(1)", 0)
-    assert it.halt() == Halt(0, MAIN_TASK)
-    it.robot.push()
-    it.talk(100)
-    assert state(it) == STATE_STOPPED
-    it.robot.push()
-    assert it.halt() == Halt(0, MAIN_TASK)
-    it.go()
-    assert it.until(lambda event: event.name == "DONE")
-    assert it.image.code == it.robot.codes()[-1]
+    debugged = debug("SI|F(0.2, 80);SHOW(1)", 0)
+    assert debugged.halt() == Halt(0, MAIN_TASK)
+    debugged.robot.push()
+    debugged.talk(100)
+    assert state(debugged) == STATE_STOPPED
+    debugged.robot.push()
+    assert debugged.halt() == Halt(0, MAIN_TASK)
+    debugged.go()
+    assert debugged.until(lambda event: event.name == "DONE")
+    assert debugged.image.code == debugged.robot.codes()[-1]
 
 
 def test_uploading_any_program_clears_the_breakpoints() -> None:
-    it = debug("SI|W(0.05);SHOW(1)", 0)
-    assert it.halt()
+    debugged = debug("SI|W(0.05);SHOW(1)", 0)
+    assert debugged.halt()
     for text in ("SI|W(0.05);SHOW(2)", "SI|W(0.05);SHOW(1)"):
-        assert it.robot.until(it.session, it.session.upload(image_of(text), saves=False)) == OK
-        assert it.halt() is None and it.events[-1].name == "DONE"
+        assert (
+            debugged.robot.until(
+                debugged.session, debugged.session.upload(image_of(text), saves=False)
+            )
+            == OK
+        )
+        assert debugged.halt() is None and debugged.events[-1].name == "DONE"
 
 
 def test_a_new_session_has_no_breakpoints() -> None:
-    it = debug("SI|W(0.05);SHOW(1)", 0)
-    assert it.halt()
-    it.session = computer(99)
-    assert it.robot.until(it.session, it.session.start()) == OK
-    assert it.halt() is None and it.events[-1].name == "DONE"
+    debugged = debug("SI|W(0.05);SHOW(1)", 0)
+    assert debugged.halt()
+    debugged.session = computer(99)
+    assert debugged.robot.until(debugged.session, debugged.session.start()) == OK
+    assert debugged.halt() is None and debugged.events[-1].name == "DONE"
 
 
 # -- parts that halt and parts that continue -------------------------------------------------------
@@ -298,54 +311,54 @@ def test_a_new_session_has_no_breakpoints() -> None:
 
 def test_nothing_halts_without_a_client() -> None:
     robot = switched_on()
-    it = DebuggedRobot("SI|LOOP(FOREVER);F(1.2, 80);END_LOOP", robot)
-    assert it.places(1) == OK
-    it.start(is_detached=True)
-    assert it.halt() == Halt(1, MAIN_TASK)
-    it.go()
+    debugged = DebuggedRobot("SI|LOOP(FOREVER);F(1.2, 80);END_LOOP", robot)
+    assert debugged.places(1) == OK
+    debugged.start(is_detached=True)
+    assert debugged.halt() == Halt(1, MAIN_TASK)
+    debugged.go()
     robot.wait(5000)
     assert len(drives(robot.did)) == 9
     assert not [line for line in robot.did if "FAULTED" in line], "a detached run goes on alone"
 
 
 def test_a_halted_run_becomes_attached() -> None:
-    it = DebuggedRobot("SI|LOOP(FOREVER);F(0.2, 80);W(0.2);END_LOOP")
-    assert it.places(1) == OK
-    it.start(is_detached=True)
-    assert it.halt()
-    it.robot.wait(1100)
-    assert [line for line in it.robot.did if "FAULTED" in line]
-    assert state(it) == STATE_FAULTED
+    debugged = DebuggedRobot("SI|LOOP(FOREVER);F(0.2, 80);W(0.2);END_LOOP")
+    assert debugged.places(1) == OK
+    debugged.start(is_detached=True)
+    assert debugged.halt()
+    debugged.robot.wait(1100)
+    assert [line for line in debugged.robot.did if "FAULTED" in line]
+    assert state(debugged) == STATE_FAULTED
 
 
 def test_the_longest_run_time_counts_halts() -> None:
-    it = DebuggedRobot("SI|W(5);SHOW(1)", switched_on(max_run_ms=3000))
-    assert it.places(0) == OK
-    it.start(is_detached=True)
-    assert it.halt()
-    assert it.until(lambda event: event.name == "FAULT") and state(it) == STATE_FAULTED
+    debugged = DebuggedRobot("SI|W(5);SHOW(1)", switched_on(max_run_ms=3000))
+    assert debugged.places(0) == OK
+    debugged.start(is_detached=True)
+    assert debugged.halt()
+    assert debugged.until(lambda event: event.name == "FAULT") and state(debugged) == STATE_FAULTED
 
 
 def test_a_halt_stops_the_motors_and_a_move_keeps_its_remaining_time() -> None:
     """Another task halts while a move of one second has 600 ms left."""
-    it = DebuggedRobot("SI|TASK;F(1, 80);END_TASK;W(0.4);SHOW(1);W(2);SHOW(TIME)")
-    show = statement_starts(it.image.code)[4]
-    assert it.places(show) == OK
-    it.start()
-    halted_halt = it.halt()
+    debugged = DebuggedRobot("SI|TASK;F(1, 80);END_TASK;W(0.4);SHOW(1);W(2);SHOW(TIME)")
+    show = statement_starts(debugged.image.code)[4]
+    assert debugged.places(show) == OK
+    debugged.start()
+    halted_halt = debugged.halt()
     assert halted_halt is not None and halted_halt.task == MAIN_TASK
-    assert [line.split(maxsplit=1)[1] for line in drives(it.robot.did)] == [
+    assert [line.split(maxsplit=1)[1] for line in drives(debugged.robot.did)] == [
         "MOTORS 80 80",
         "MOTORS 0 0",
     ]
-    [driving] = [task for task in it.tasks() if task[0] == 3]
+    [driving] = [task for task in debugged.tasks() if task[0] == 3]
     assert driving[2] == 600
-    it.talk(700)
-    it.go()
-    assert it.halt() is None
-    times = [int(line.split()[0]) for line in drives(it.robot.did)]
+    debugged.talk(700)
+    debugged.go()
+    assert debugged.halt() is None
+    times = [int(line.split()[0]) for line in drives(debugged.robot.did)]
     assert times[1] - times[0] == 400 and times[3] - times[2] == 600
-    shown_values = [event.value for event in it.events if event.name == "SHOW"]
+    shown_values = [event.value for event in debugged.events if event.name == "SHOW"]
     assert shown_values[-1] == 2400, "TIME stands while it is halted"
 
 
@@ -353,52 +366,52 @@ def test_a_measured_move_continues_with_its_rest() -> None:
     distances = []
     for is_halted in (False, True):
         robot = switched_on()
-        robot.discs(cm=100_000, degrees=20_000)
-        it = DebuggedRobot("SI|TASK;F(30 CM, 80);END_TASK;W(0.2);SHOW(1)", robot)
-        show = statement_starts(it.image.code)[4]
-        assert it.places(*[show] * is_halted) == OK
-        it.start()
+        robot.mount_discs(cm=100_000, degrees=20_000)
+        debugged = DebuggedRobot("SI|TASK;F(30 CM, 80);END_TASK;W(0.2);SHOW(1)", robot)
+        show = statement_starts(debugged.image.code)[4]
+        assert debugged.places(*[show] * is_halted) == OK
+        debugged.start()
         if is_halted:
-            assert it.halt() == Halt(show, MAIN_TASK)
-            it.talk(1000)
+            assert debugged.halt() == Halt(show, MAIN_TASK)
+            debugged.talk(1000)
             halted_at = robot.wheel_edges()[0]
-            it.talk(500)
+            debugged.talk(500)
             assert 0 < halted_at == robot.wheel_edges()[0], "it stands"
-            it.go()
-        assert it.halt() is None and it.events[-1].name == "DONE"
-        it.talk(1000)
+            debugged.go()
+        assert debugged.halt() is None and debugged.events[-1].name == "DONE"
+        debugged.talk(1000)
         distances.append(robot.wheel_edges()[0])
     assert abs(distances[1] - distances[0]) < 1.5, "edges"
 
 
 def test_a_check_that_is_repeated_halts_once() -> None:
-    it = DebuggedRobot("SI|LOOP(2);F(0.3, 40) UNTIL(DISTANCE < 10);END_LOOP;SHOW(1)")
-    code = it.image.code
+    debugged = DebuggedRobot("SI|LOOP(2);F(0.3, 40) UNTIL(DISTANCE < 10);END_LOOP;SHOW(1)")
+    code = debugged.image.code
     _, check = statement_starts(code)[1:3]
-    it.robot.sense(*[30_000] * len(KIT.sensors))
-    assert it.places(check) == OK
-    it.start()
+    debugged.robot.set_readings(*[30_000] * len(KIT.sensors))
+    assert debugged.places(check) == OK
+    debugged.start()
     halts = []
-    while (halt := it.halt()) is not None:
+    while (halt := debugged.halt()) is not None:
         halts.append(halt.offset)
-        it.go()
+        debugged.go()
     assert halts == [check, check], "once for each move"
 
 
 def test_a_when_halts_once_until_it_has_gone_through() -> None:
-    it = DebuggedRobot("SI|WHEN(LIGHT_R > 5);SHOW(1);END_WHEN;W(3)")
-    check = statement_starts(it.image.code)[1]
+    debugged = DebuggedRobot("SI|WHEN(LIGHT_R > 5);SHOW(1);END_WHEN;W(3)")
+    check = statement_starts(debugged.image.code)[1]
     quiet, loud = ([0] * len(KIT.sensors) for _ in range(2))
     loud[KIT.names.index("LIGHT_R")] = 9000
-    it.robot.sense(*quiet)
-    assert it.places(check) == OK
-    it.start()
-    assert it.halt() == Halt(check, 0)
-    it.go()
-    assert it.halt(500) is None, "its check is FALSE again and again"
-    it.robot.sense(*loud)
-    assert it.halt() == Halt(check, 0), "once it has gone through it begins anew"
-    assert [event.value for event in it.events if event.name == "SHOW"] == [1000]
+    debugged.robot.set_readings(*quiet)
+    assert debugged.places(check) == OK
+    debugged.start()
+    assert debugged.halt() == Halt(check, 0)
+    debugged.go()
+    assert debugged.halt(500) is None, "its check is FALSE again and again"
+    debugged.robot.set_readings(*loud)
+    assert debugged.halt() == Halt(check, 0), "once it has gone through it begins anew"
+    assert [event.value for event in debugged.events if event.name == "SHOW"] == [1000]
 
 
 def count_visits(image: Image, place: int) -> int:
@@ -423,62 +436,62 @@ def test_a_loop_around_one_statement_halts_each_time() -> None:
         "SI|N = 0;LOOP(2);LOOP(2);N = N + 1;END_LOOP;LOOP(0);W(9);END_LOOP;END_LOOP;SHOW(N)",
         "SI|N = 0;WHILE(N < 3);N = N + 1;IF(N = 2);BREAK;ENDIF;END_WHILE;W(0.1)",
     ):
-        it = DebuggedRobot(text)
-        for offset in statement_starts(it.image.code):
-            session = it.session
-            assert it.robot.until(session, session.break_at((offset,))) == OK
-            it.start()
+        debugged = DebuggedRobot(text)
+        for offset in statement_starts(debugged.image.code):
+            session = debugged.session
+            assert debugged.robot.until(session, session.break_at((offset,))) == OK
+            debugged.start()
             count = 0
-            while it.halt() is not None:
+            while debugged.halt() is not None:
                 count += 1
                 assert count < 20
-                it.go()
-            assert count == count_visits(it.image, offset), (text, offset, count)
+                debugged.go()
+            assert count == count_visits(debugged.image, offset), (text, offset, count)
 
 
 def test_a_show_without_room_halts_once() -> None:
     robot = switched_on()
-    robot.pace(40)
-    it = debug("SI|LOOP(6);SHOW(1);END_LOOP", SECOND_MOVE_OFFSET, robot=robot)
-    show = statement_starts(it.image.code)[1]
-    assert it.places(show) == OK
+    robot.set_byte_ticks(40)
+    debugged = debug("SI|LOOP(6);SHOW(1);END_LOOP", SECOND_MOVE_OFFSET, robot=robot)
+    show = statement_starts(debugged.image.code)[1]
+    assert debugged.places(show) == OK
     count = 0
-    while it.halt(3000) is not None:
+    while debugged.halt(3000) is not None:
         count += 1
-        it.go()
+        debugged.go()
     assert count in (5, 6)  # the first may have been before its place was set
 
 
 def test_a_halt_is_reported_repeatedly_but_a_session_passes_it_on_once() -> None:
-    it = debug(DRIVE_PROGRAM, SECOND_MOVE_OFFSET)
-    assert it.halt()
+    debugged = debug(DRIVE_PROGRAM, SECOND_MOVE_OFFSET)
+    assert debugged.halt()
     number = bytes((BY_NAME["HALTED"].number | 0x80,))
     sent_bytes = b""
     for _ in range(1600):
-        data = it.session.poll(it.robot.now_ms)
-        piece = it.robot.step(data)
+        data = debugged.session.poll(debugged.robot.now_ms)
+        piece = debugged.robot.step(data)
         sent_bytes += piece
-        it.session.receive(piece, it.robot.now_ms)
+        debugged.session.receive(piece, debugged.robot.now_ms)
     assert sent_bytes.count(number) >= 3
-    assert not [event for event in it.session.events() if event.name == "HALTED"]
-    it.step()
-    assert it.halt() == Halt(5, MAIN_TASK)
+    assert not [event for event in debugged.session.events() if event.name == "HALTED"]
+    debugged.step()
+    assert debugged.halt() == Halt(5, MAIN_TASK)
 
 
 def test_breakpoints_may_change_while_running_or_halted() -> None:
-    it = debug("SI|N = 0;LOOP(FOREVER);W(0.1);N = N + 1;SHOW(N);END_LOOP")
-    assert it.halt(300) is None
-    _, _, _, add, show, _ = statement_starts(it.image.code)
-    assert it.places(add) == OK
-    assert it.halt() == Halt(add, MAIN_TASK)
-    assert it.places(show) == OK
-    it.go()
-    assert it.halt() == Halt(show, MAIN_TASK)
-    it.go()
-    assert it.halt() == Halt(show, MAIN_TASK)
-    assert it.places() == OK
-    it.go()
-    assert it.halt(500) is None and state(it) == STATE_RUNNING
+    debugged = debug("SI|N = 0;LOOP(FOREVER);W(0.1);N = N + 1;SHOW(N);END_LOOP")
+    assert debugged.halt(300) is None
+    _, _, _, add, show, _ = statement_starts(debugged.image.code)
+    assert debugged.places(add) == OK
+    assert debugged.halt() == Halt(add, MAIN_TASK)
+    assert debugged.places(show) == OK
+    debugged.go()
+    assert debugged.halt() == Halt(show, MAIN_TASK)
+    debugged.go()
+    assert debugged.halt() == Halt(show, MAIN_TASK)
+    assert debugged.places() == OK
+    debugged.go()
+    assert debugged.halt(500) is None and state(debugged) == STATE_RUNNING
 
 
 @pytest.mark.parametrize("seed", range(6))
@@ -509,15 +522,15 @@ def test_a_program_halts_where_the_last_accepted_request_said(seed: int) -> None
 
 def test_a_step_stays_in_its_task_unless_another_task_reaches_a_breakpoint() -> None:
     text = "SI|TASK;W(0.1);SHOW(1);W(0.1);SHOW(2);END_TASK;W(0.15);SHOW(8);W(1);SHOW(9)"
-    it = DebuggedRobot(text)
-    places = statement_starts(it.image.code)
+    debugged = DebuggedRobot(text)
+    places = statement_starts(debugged.image.code)
     main = places.index(next(offset for offset in places if offset >= places[6]))
-    assert it.places(places[1]) == OK
-    it.start()
-    assert it.halt() == Halt(places[1], 0)
+    assert debugged.places(places[1]) == OK
+    debugged.start()
+    assert debugged.halt() == Halt(places[1], 0)
     for place in places[2:6]:
-        it.step()
-        assert it.halt() == Halt(place, 0)
+        debugged.step()
+        assert debugged.halt() == Halt(place, 0)
     assert main
 
 
@@ -532,28 +545,31 @@ def test_a_typed_program_also_halts() -> None:
 
 
 def test_a_session_sets_breakpoints_only_on_robots_that_can_halt() -> None:
-    it = DebuggedRobot(DRIVE_PROGRAM)
-    assert it.session.robot
-    features = it.session.robot.values.features & ~BREAKPOINTS
-    it.session._handshake._take_features(features)
-    assert it.robot.until(it.session, it.session.break_at((0,))) == STATUSES["NO_BREAKPOINTS"]
-    assert it.robot.until(it.session, it.session.break_at(())) == OK
+    debugged = DebuggedRobot(DRIVE_PROGRAM)
+    assert debugged.session.robot
+    features = debugged.session.robot.values.features & ~BREAKPOINTS
+    debugged.session._handshake._take_features(features)
+    assert (
+        debugged.robot.until(debugged.session, debugged.session.break_at((0,)))
+        == STATUSES["NO_BREAKPOINTS"]
+    )
+    assert debugged.robot.until(debugged.session, debugged.session.break_at(())) == OK
 
 
 def test_a_line_asked_to_halt_does_so_before_its_first_statement() -> None:
     """It has no breakpoint when it runs again, and neither has the stored program."""
-    it = DebuggedRobot(DRIVE_PROGRAM)
+    debugged = DebuggedRobot(DRIVE_PROGRAM)
     code = image_of(DRIVE_PROGRAM).code
-    assert it.robot.until(it.session, it.session.live(code, halts=True)) == OK
-    assert it.halt() == Halt(0, MAIN_TASK) and it.variables()[0] == 0
-    assert it.places(SECOND_MOVE_OFFSET) == OK and it.go()
-    assert it.halt() == Halt(SECOND_MOVE_OFFSET, MAIN_TASK) and it.step()
-    assert it.halt() and it.places() == OK and it.go()
-    assert it.halt() is None and len(drives(it.robot.did)) == 4
-    assert it.robot.until(it.session, it.session.live(code)) == OK
-    assert it.halt() is None
-    it.start()
-    assert it.halt() is None
+    assert debugged.robot.until(debugged.session, debugged.session.live(code, halts=True)) == OK
+    assert debugged.halt() == Halt(0, MAIN_TASK) and debugged.variables()[0] == 0
+    assert debugged.places(SECOND_MOVE_OFFSET) == OK and debugged.go()
+    assert debugged.halt() == Halt(SECOND_MOVE_OFFSET, MAIN_TASK) and debugged.step()
+    assert debugged.halt() and debugged.places() == OK and debugged.go()
+    assert debugged.halt() is None and len(drives(debugged.robot.did)) == 4
+    assert debugged.robot.until(debugged.session, debugged.session.live(code)) == OK
+    assert debugged.halt() is None
+    debugged.start()
+    assert debugged.halt() is None
 
 
 @pytest.mark.parametrize(
@@ -566,13 +582,13 @@ def test_a_line_asked_to_halt_does_so_before_its_first_statement() -> None:
 def test_a_halted_line_does_the_same_as_an_unhalted_one(text: str) -> None:
     variables = []
     for halts in (True, False):
-        it = DebuggedRobot(DRIVE_PROGRAM)
-        request = it.session.live(image_of(f"SI|{text}").code, halts=halts)
-        assert it.robot.until(it.session, request) == OK
-        while it.halt(200):
+        debugged = DebuggedRobot(DRIVE_PROGRAM)
+        request = debugged.session.live(image_of(f"SI|{text}").code, halts=halts)
+        assert debugged.robot.until(debugged.session, request) == OK
+        while debugged.halt(200):
             assert halts
-            it.go()
-        variables.append([event.value for event in it.events if event.name == "SHOW"])
+            debugged.go()
+        variables.append([event.value for event in debugged.events if event.name == "SHOW"])
     assert variables[0] == variables[1] != []
 
 
@@ -581,6 +597,6 @@ def test_a_halted_line_does_the_same_as_an_unhalted_one(text: str) -> None:
     [("PROGRAM", b"\0"), ("BEGIN", bytes((ISA_MAJOR, 0, 0, 16, 0, 0, 1, 0))), ("START", b"")],
 )
 def test_only_a_line_can_be_asked_to_halt(name: str, extra_bytes: bytes) -> None:
-    it = DebuggedRobot(DRIVE_PROGRAM)
+    debugged = DebuggedRobot(DRIVE_PROGRAM)
     mode = HALTS | RUN * (name != "START")
-    assert bytes((BAD_VALUE,)) in answer(it, name, bytes((mode,)) + extra_bytes)
+    assert bytes((BAD_VALUE,)) in answer(debugged, name, bytes((mode,)) + extra_bytes)

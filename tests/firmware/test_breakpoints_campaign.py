@@ -32,7 +32,7 @@ def switched_on(kit: Kit, seed: int) -> HostFirmware:
     robot = HostFirmware(kit, seed=seed)
     robot.wait(200)
     rng = random.Random(seed)
-    robot.sense(*(rng.choice((0, 5000, 30_000)) for _ in kit.sensors))
+    robot.set_readings(*(rng.choice((0, 5000, 30_000)) for _ in kit.sensors))
     return robot
 
 
@@ -41,22 +41,22 @@ def run(image: Image, kit: Kit, seed: int, mode: str) -> list[str]:
     without the motor changes of halts, up to the first event after LIMIT_MS of its own time.
     """
     rng = random.Random(seed)
-    it = DebuggedRobot(image, switched_on(kit, seed), kit.fingerprint)
+    debugged = DebuggedRobot(image, switched_on(kit, seed), kit.fingerprint)
     statements = statement_starts(image.code)
     if mode != "alone":
-        some = (
+        lines_before = (
             statements[:1] if mode == "steps" else rng.sample(statements, min(4, len(statements)))
         )
-        assert it.places(*some) == OK
-    it.talk(RUN_START_MS - it.robot.now_ms)
-    event_count = len(it.robot.did)
-    it.start()
+        assert debugged.places(*lines_before) == OK
+    debugged.talk(RUN_START_MS - debugged.robot.now_ms)
+    event_count = len(debugged.robot.did)
+    debugged.start()
     own_ms, lines_there, halted_in = 0, list[str](), 0
     while own_ms < LIMIT_MS:
-        events = it.talk(1)
+        events = debugged.talk(1)
         own_ms += 1
-        lines = [line.split(maxsplit=1)[1] for line in it.robot.did[event_count:]]
-        event_count = len(it.robot.did)
+        lines = [line.split(maxsplit=1)[1] for line in debugged.robot.did[event_count:]]
+        event_count = len(debugged.robot.did)
         halts = [event for event in events if isinstance(event, HaltedEvent)]
         lines_there += lines
         lines_there += [f"SHOW {event.value}" for event in events if event.name == "SHOW"]
@@ -65,7 +65,7 @@ def run(image: Image, kit: Kit, seed: int, mode: str) -> list[str]:
         for event in halts:
             assert event.offset in statements
             halted_in += 1
-            it.go(RESUME_STEP if mode == "steps" or rng.random() < 0.3 else RESUME_GO)
+            debugged.go(RESUME_STEP if mode == "steps" or rng.random() < 0.3 else RESUME_GO)
             lines_there.append("HALT")
     assert mode != "steps" or halted_in
     return lines_there
@@ -99,8 +99,8 @@ def compare(seed: int) -> bool:
             first, second = without_halts(unstepped_run, kind), without_halts(stepped_run, kind)
             count = min(len(first), len(second))
             assert first[:count] == second[:count], (seed, mode, kind, text)
-            ended = "FINISHED" in unstepped_run and "FINISHED" in stepped_run
-            assert not ended or len(first) == len(second), (seed, mode, kind, text)
+            have_both_ended = "FINISHED" in unstepped_run and "FINISHED" in stepped_run
+            assert not have_both_ended or len(first) == len(second), (seed, mode, kind, text)
         assert not [line for line in stepped_run if "CHANGED" in line or "UNVERIFIED" in line]
     return True
 
@@ -116,51 +116,53 @@ NEXT_PROGRAM = (
     "SI|BEEP(0.001, 31);LOOP(3);SHOW(TIME);F(0.06, 80);END_LOOP;W(0.1);M(30, 30);W(0.2);SHOW(9)"
 )
 STOPS: dict[str, Callable[[DebuggedRobot], object]] = {
-    "nothing": lambda it: None,  # the next run ends it
-    "zeros": lambda it: it.session.receive(it.robot.step(bytes(4)), it.robot.now_ms),
-    "its computer": lambda it: it.session.stop(it.robot.now_ms),
-    "the button": lambda it: it.robot.talk(it.session, 1, flags=1),
-    "a stall": lambda it: it.robot.talk(it.session, 1, flags=4),
+    "nothing": lambda debugged: None,  # the next run ends it
+    "zeros": lambda debugged: debugged.session.receive(
+        debugged.robot.step(bytes(4)), debugged.robot.now_ms
+    ),
+    "its computer": lambda debugged: debugged.session.stop(debugged.robot.now_ms),
+    "the button": lambda debugged: debugged.robot.talk(debugged.session, 1, flags=1),
+    "a stall": lambda debugged: debugged.robot.talk(debugged.session, 1, flags=4),
 }
 
 
-def halts_before(it: DebuggedRobot, rng: random.Random) -> None:
+def play_halts(debugged: DebuggedRobot, rng: random.Random) -> None:
     """Start the program, step it, resume it, leave it halted, and end it in some way."""
     for _ in range(rng.randint(1, 3)):
-        statements = statement_starts(it.image.code)
-        it.places(*rng.sample(statements, rng.randint(0, 4)))
-        it.start()
+        statements = statement_starts(debugged.image.code)
+        debugged.places(*rng.sample(statements, rng.randint(0, 4)))
+        debugged.start()
         for _ in range(rng.randint(0, 5)):
-            it.talk(rng.choice((1, 20, 100, 700)))
+            debugged.talk(rng.choice((1, 20, 100, 700)))
             resume_mode = rng.choice((RESUME_GO, RESUME_STEP, RESUME_STEP))
             if rng.random() < 0.7:
-                it.go(resume_mode)
+                debugged.go(resume_mode)
         if rng.random() < 0.5:
             # Sent while a stop is on its way.
-            it.session.resume(extent=rng.choice((RESUME_GO, RESUME_STEP)))
-            it.talk(rng.choice((0, 1, 2, 3)))
-        STOPS[rng.choice([*STOPS])](it)
-        it.talk(rng.choice((300, 700)))
+            debugged.session.resume(extent=rng.choice((RESUME_GO, RESUME_STEP)))
+            debugged.talk(rng.choice((0, 1, 2, 3)))
+        STOPS[rng.choice([*STOPS])](debugged)
+        debugged.talk(rng.choice((300, 700)))
 
 
-def list_next_run(it: DebuggedRobot, places: list[int]) -> list[str]:
+def list_next_run(debugged: DebuggedRobot, places: list[int]) -> list[str]:
     """Return the actions and events of a run, with its halts, from its request on."""
-    assert it.places(*places) == OK
-    it.events.clear()
-    event_count = len(it.robot.did)
-    it.start()
-    began_ms, lines, halts = it.robot.now_ms, list[str](), 0
-    while it.robot.now_ms < began_ms + 1500:
+    assert debugged.places(*places) == OK
+    debugged.events.clear()
+    event_count = len(debugged.robot.did)
+    debugged.start()
+    began_ms, lines, halts = debugged.robot.now_ms, list[str](), 0
+    while debugged.robot.now_ms < began_ms + 1500:
         is_halted = False
-        for event in it.talk(4):
+        for event in debugged.talk(4):
             if event.name in ("SHOW", "HALTED", *END_EVENTS):
                 value = getattr(event, "value", getattr(event, "offset", ""))
                 lines.append(f"{event.name} {value}")
                 is_halted = event.name == "HALTED"
         if is_halted:
             halts += 1
-            it.go(RESUME_STEP if halts % 3 == 0 else RESUME_GO)
-    actions = it.robot.did[event_count:]
+            debugged.go(RESUME_STEP if halts % 3 == 0 else RESUME_GO)
+    actions = debugged.robot.did[event_count:]
     while actions and not actions[0].endswith("BEEP 31 1"):
         del actions[0]  # the end of the run before
     rows = (line.split(" ", 1) for line in actions)
@@ -170,11 +172,11 @@ def list_next_run(it: DebuggedRobot, places: list[int]) -> list[str]:
 @pytest.mark.parametrize("seed", range(24))
 def test_a_run_after_any_halts_is_as_on_a_fresh_robot(seed: int) -> None:
     rng = random.Random(seed)
-    it, fresh = DebuggedRobot(NEXT_PROGRAM), DebuggedRobot(NEXT_PROGRAM)
-    halts_before(it, rng)
-    places = rng.sample(statement_starts(it.image.code), rng.choice((0, 0, 1, 2)))
+    debugged, fresh = DebuggedRobot(NEXT_PROGRAM), DebuggedRobot(NEXT_PROGRAM)
+    play_halts(debugged, rng)
+    places = rng.sample(statement_starts(debugged.image.code), rng.choice((0, 0, 1, 2)))
     runs = []
-    for robot in (fresh, it):
+    for robot in (fresh, debugged):
         robot.robot.talk(robot.session, -robot.robot.now_ms % 100)
         rows = list_next_run(robot, places)
         runs.append([row for row in rows if "STOPPED" not in row])  # rows of the run before

@@ -115,9 +115,9 @@ def step_on_chip(image: Image, uno: Uno) -> Seen:
     return Seen(shows, settings, is_over, own_ms, halts)
 
 
-def list_long_settings(steps: Seen, least_ms: float) -> list[Setting]:
+def list_long_settings(steps: Seen, min_ms: float) -> list[Setting]:
     """Return the lasting settings of the motors, without repetitions and pauses."""
-    lasting = [setting for ms, setting in steps.settings if ms >= least_ms and setting != (0, 0)]
+    lasting = [setting for ms, setting in steps.settings if ms >= min_ms and setting != (0, 0)]
     return [setting for setting, _ in groupby(lasting)]
 
 
@@ -130,28 +130,28 @@ def sum_durations(steps: Seen) -> dict[Setting, float]:
     return result
 
 
-def is_within(some: list[Setting], longer: list[Setting]) -> bool:
-    """Return whether `some` is a subsequence of `longer`."""
+def is_within(shorter: list[Setting], longer: list[Setting]) -> bool:
+    """Return whether `shorter` is a subsequence of `longer`."""
     rest = iter(longer)
-    return all(setting in rest for setting in some)
+    return all(setting in rest for setting in shorter)
 
 
 def compare(image: Image, uno: Uno) -> bool:
     """Compare a program; return whether it has ended."""
-    wanted_observation, run = run_in_tsc(image), step_on_chip(image, uno)
-    show_count = min(len(wanted_observation.shows), len(run.shows))
-    assert run.shows[:show_count] == wanted_observation.shows[:show_count]
-    assert is_within(list_long_settings(run, SEEN_MS), list_long_settings(wanted_observation, 0))
-    assert run.is_over or wanted_observation.end_ms > OWN_MS or run.halts == MOST_HALTS
+    expected_observation, run = run_in_tsc(image), step_on_chip(image, uno)
+    show_count = min(len(expected_observation.shows), len(run.shows))
+    assert run.shows[:show_count] == expected_observation.shows[:show_count]
+    assert is_within(list_long_settings(run, SEEN_MS), list_long_settings(expected_observation, 0))
+    assert run.is_over or expected_observation.end_ms > OWN_MS or run.halts == MOST_HALTS
     if run.is_over:
-        assert run.shows == wanted_observation.shows and wanted_observation.is_over
-        expected, actual = sum_durations(wanted_observation), sum_durations(run)
+        assert run.shows == expected_observation.shows and expected_observation.is_over
+        expected, actual = sum_durations(expected_observation), sum_durations(run)
         for setting in expected.keys() | actual.keys():
             off_ms = abs(expected.get(setting, 0) - actual.get(setting, 0))
-            most_ms = OFF_MS + OFF_HALT_MS * run.halts + OFF_SHOW_MS * len(run.shows)
-            assert off_ms <= most_ms, setting
+            max_ms = OFF_MS + OFF_HALT_MS * run.halts + OFF_SHOW_MS * len(run.shows)
+            assert off_ms <= max_ms, setting
         assert is_within(
-            list_long_settings(wanted_observation, LASTING_MS), list_long_settings(run, SEEN_MS)
+            list_long_settings(expected_observation, LASTING_MS), list_long_settings(run, SEEN_MS)
         )
     return run.is_over
 
@@ -207,12 +207,12 @@ def test_a_firmware_with_breakpoints_leaves_enough_stack(
 if __name__ == "__main__":
     total = int(sys.argv[1]) if len(sys.argv) > 1 else 1000
     begin = int(sys.argv[2]) if len(sys.argv) > 2 else 0
-    which = sys.argv[3] if len(sys.argv) > 3 else "uno"
-    elf = firmware_size.measure(BOARDS[which]).firmware
+    board = sys.argv[3] if len(sys.argv) > 3 else "uno"
+    elf = firmware_size.measure(BOARDS[board]).firmware
     ran = over = 0
     with (
         tempfile.TemporaryDirectory() as folder,
-        switched_on(elf, Path(folder) / "eeprom", which) as robot,
+        switched_on(elf, Path(folder) / "eeprom", board) as robot,
     ):
         for number, program in images(begin):
             try:
@@ -222,4 +222,4 @@ if __name__ == "__main__":
             ran += 1
             if ran == total:
                 break
-    print(f"{ran} programs, {over} to their end, stepped on a simulated {which}: as tsc run says")
+    print(f"{ran} programs, {over} to their end, stepped on a simulated {board}: as tsc run says")

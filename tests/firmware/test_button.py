@@ -40,11 +40,11 @@ def test_spikes_start_nothing_whatever_their_spacing(count: int) -> None:
 
 @pytest.mark.parametrize("turn", TURNS_US)
 def test_a_press_is_reported_at_once_and_its_release_late(turn: int) -> None:
-    chance = random.Random(turn)
+    rng = random.Random(turn)
     cases = []
     for _ in range(200):
-        chatter = sorted(chance.sample(range(1, 5000), 4))
-        up_us = chance.randrange(300_000, 500_000)
+        chatter = sorted(rng.sample(range(1, 5000), 4))
+        up_us = rng.randrange(300_000, 500_000)
         cases.append((turn, 0, [0, *chatter, up_us, *(up_us + offset_us for offset_us in chatter)]))
     for (_, _, edges), events in zip(cases, button_events(cases), strict=True):
         assert letters(events) == "PHR"

@@ -113,18 +113,18 @@ def press_button(table: Table, press: str) -> None:
 def test_the_button_acts_as_documented_in_each_state(state: str, press: str) -> None:
     table = Table()
     STATES[state](table)
-    robot, begun_ms = table.robot, table.robot.now_ms
+    robot, began_ms = table.robot, table.robot.now_ms
     was_latched, count_before = robot.is_latched, len(robot.did)
     press_button(table, press)
     rows = [row.split(" ", 1) for row in robot.did[count_before:]]
-    moves = [(int(ms) - begun_ms, action) for ms, action in rows if action.startswith("MOTORS")]
-    wanted_texts, columns = read_table()[state], PRESSES[press][1]
+    moves = [(int(ms) - began_ms, action) for ms, action in rows if action.startswith("MOTORS")]
+    expected_texts, columns = read_table()[state], PRESSES[press][1]
     first_ms = letters()[press][0][0]
-    stops = wanted_texts[EDGE_COLUMN] == "stops it"
+    stops = expected_texts[EDGE_COLUMN] == "stops it"
     assert was_latched != stops, "a robot that runs, or one that does not"
-    starts = SHORT_COLUMN in columns and wanted_texts[SHORT_COLUMN].startswith("starts")
+    starts = SHORT_COLUMN in columns and expected_texts[SHORT_COLUMN].startswith("starts")
     assert not any(
-        wanted_texts[event] not in ("-", "stops it") for event in (EDGE_COLUMN, LATE_COLUMN)
+        expected_texts[event] not in ("-", "stops it") for event in (EDGE_COLUMN, LATE_COLUMN)
     )
     if stops:
         assert [action for _, action in moves] == ["MOTORS 0 0"]
@@ -142,7 +142,9 @@ def test_the_button_acts_as_documented_in_each_state(state: str, press: str) -> 
     is_forgotten = table.is_reset_down and press == HELD_FOR_EVER
     assert len(beeps) == (
         is_forgotten
-        or (TWO_SECONDS_COLUMN in columns and wanted_texts[TWO_SECONDS_COLUMN].startswith("beeps"))
+        or (
+            TWO_SECONDS_COLUMN in columns and expected_texts[TWO_SECONDS_COLUMN].startswith("beeps")
+        )
     )
 
 
@@ -202,7 +204,7 @@ def test_a_release_starts_nothing_after_a_run_or_a_stop(meanwhile: str, is_sure:
     table = Table()
     table.upload_program(SAVED_POWER)
     if "text" in meanwhile:
-        table.quiet()
+        table.fall_silent()
     table.talk(1, BUTTON_PRESSED)
     table.talk(31 if is_sure else 5)
     if is_sure:

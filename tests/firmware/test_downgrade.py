@@ -50,10 +50,10 @@ OTHER_ID, OTHER_SEED = 0x00C0FFEE, 0x0BADCAFE
 class End:
     """A robot with an owner, whose clock the test controls; `keys` has its key."""
 
-    def __init__(self, which: int = KEY_OWNER) -> None:
+    def __init__(self, key_kind: int = KEY_OWNER) -> None:
         self.keys = Keys()
         self.table = OwnedRobot()
-        session = self.table.claim_session(self.keys, which)
+        session = self.table.claim_session(self.keys, key_kind)
         assert self.table.outcome(session, session.name(NAME)) == "OK"
         self.keys.stored_keys = [key._replace(name=NAME.decode()) for key in self.keys.stored_keys]
 
@@ -80,14 +80,14 @@ class Between:
     """
 
     def __init__(
-        self, end: End, draw: random.Random, cleared: int, passes_on: Callable[[Frame], bool],
+        self, end: End, rng: random.Random, cleared: int, passes_on: Callable[[Frame], bool],
         cuts_stops: bool = True, other_id: int | None = None,
     ) -> None:  # fmt: skip
         self.other_id = other_id
-        self.end, self.draw, self.cleared, self.passes_on = end, draw, cleared, passes_on
+        self.end, self.rng, self.cleared, self.passes_on = end, rng, cleared, passes_on
         self.cuts_stops = cuts_stops
         self.epoch = 0
-        self.waits_ms = draw.choice((0, 0, 300, 1900, 2500, 4000))
+        self.waits_ms = rng.choice((0, 0, 300, 1900, 2500, 4000))
         self.zeros_ms: int | None = None
 
     def hears(self, data: bytes, now_ms: int) -> bytes:
@@ -107,8 +107,8 @@ class Between:
                 self.epoch = frame.epoch
                 replies += self.pretended_answer(frame)
         if self.zeros_ms is not None and now_ms >= self.zeros_ms + self.waits_ms:
-            epoch = (self.epoch + self.draw.randrange(2)) & 0xFF
-            replies += encode_frame(Frame(STOPPED, self.draw.randrange(256), epoch, b"\1", True))
+            epoch = (self.epoch + self.rng.randrange(2)) & 0xFF
+            replies += encode_frame(Frame(STOPPED, self.rng.randrange(256), epoch, b"\1", True))
         return b"\0" * bool(replies) + replies
 
     def change_answers(self, data: bytes) -> bytes:
@@ -129,15 +129,15 @@ class Between:
     def pretended_answer(self, frame: Frame) -> bytes:
         """Return a false answer of success, of the right length."""
         message = next(message for message in BY_NAME.values() if message.number == frame.number)
-        least = sum(field.least_bytes for field in message.reply)
-        payload = bytearray(self.draw.randbytes(least))
+        min_size = sum(field.least_bytes for field in message.reply)
+        payload = bytearray(self.rng.randbytes(min_size))
         if frame.number == STATUS:
             payload[0] = STATE_STOPPED
         if frame.number == BY_NAME["PROGRAM"].number:
             payload[:4] = image_of(FOREVER).checksum.to_bytes(4, "little")
-        if frame.number == AUTHENTICATE and self.draw.random() < 0.5:
+        if frame.number == AUTHENTICATE and self.rng.random() < 0.5:
             wrong_payload = bytes(
-                [self.draw.choice((STATUSES["WRONG_KEY"], STATUSES["NOT_OWNER"])), 4, 0]
+                [self.rng.choice((STATUSES["WRONG_KEY"], STATUSES["NOT_OWNER"])), 4, 0]
             )
             return encode_frame(
                 frame._replace(payload=wrong_payload, is_reply=True, is_sealed=False)
@@ -181,9 +181,9 @@ def talk_honestly(end: End, session: Session, request: PendingRequest[Any] | Non
     return talk(attacker, session, request)
 
 
-def start_long_drive(end: End, draw: random.Random) -> None:
+def start_long_drive(end: End, rng: random.Random) -> None:
     """Start a long drive, whatever its state."""
-    session = end.session(draw.getrandbits(32), end.keys)
+    session = end.session(rng.getrandbits(32), end.keys)
     request = session.upload(image_of(FOREVER), saves=False, is_detached=True)
     talk_honestly(end, session, request)
     assert request.outcome and request.outcome.status == 0, request.outcome
@@ -192,21 +192,23 @@ def start_long_drive(end: End, draw: random.Random) -> None:
 
 def run_trial(end: End, seed: int) -> str:
     """Send a robot a request through the attacker; return its kind."""
-    draw = random.Random(seed)
+    rng = random.Random(seed)
     keys = Keys()
     keys.stored_keys = list(end.keys.stored_keys)
-    session = end.session(draw.getrandbits(32), keys)
-    cleared = draw.choice((0, *CLEARED_FLAGS))
-    greets = {HELLO} | ({AUTHENTICATE} if draw.random() < 0.5 else set())
-    if draw.random() < 0.3:
+    session = end.session(rng.getrandbits(32), keys)
+    cleared = rng.choice((0, *CLEARED_FLAGS))
+    greets = {HELLO} | ({AUTHENTICATE} if rng.random() < 0.5 else set())
+    if rng.random() < 0.3:
         greets |= {STATUS, BY_NAME["PING"].number}
-    all_pass = cleared != 0 and draw.random() < 0.3
-    attacker = Between(end, draw, cleared, pass_frame if all_pass else lambda f: f.number in greets)
-    kind = draw.choice(("hello", "stop", "upload", "live", "name"))
+    passes_all = cleared != 0 and rng.random() < 0.3
+    attacker = Between(
+        end, rng, cleared, pass_frame if passes_all else lambda f: f.number in greets
+    )
+    kind = rng.choice(("hello", "stop", "upload", "live", "name"))
     if kind == "stop":
         if state_of(end) != STATE_RUNNING:
-            start_long_drive(end, draw)
-        is_greeted = draw.random() < 0.5
+            start_long_drive(end, rng)
+        is_greeted = rng.random() < 0.5
         if is_greeted:  # greeted by the robot itself
             talk_honestly(end, session, session.hello())
         session.stop(0)
@@ -225,7 +227,7 @@ def run_trial(end: End, seed: int) -> str:
         request = session.hello()
     talk(attacker, session, request)
     status = request.outcome.status if request.outcome else LOST
-    if cleared & SEALS or AUTHENTICATE in greets or all_pass:
+    if cleared & SEALS or AUTHENTICATE in greets or passes_all:
         expected = (UNPROVEN,) if cleared else (0,) if kind == "hello" else (UNPROVEN, LOST)
         assert status in expected, f"seed {seed}: {kind} with {cleared:x} cleared: {status}"
     elif cleared or kind != "hello":
@@ -236,28 +238,28 @@ def run_trial(end: End, seed: int) -> str:
 def run_stranger_trial(end: End, strange: Stranger, seed: int) -> str:
     """Send a request to a robot while another one answers, or one with another id; return the
     answer."""
-    draw = random.Random(seed)
+    rng = random.Random(seed)
     keys = Keys()
     keys.stored_keys = list(end.keys.stored_keys)
-    how = draw.choice(("id", "robot", "id, greeted", "robot, greeted"))
-    is_place = draw.random() < 0.5
+    disguise = rng.choice(("id", "robot", "id, greeted", "robot, greeted"))
+    is_place = rng.random() < 0.5
     if is_place:  # the name is unknown, but the robot has answered here before
         keys.stored_keys = [key._replace(name="") for key in keys.stored_keys]
-    place = ROBOT_PLACE if is_place else draw.choice(("", "tcp://bob"))
-    session = end.session(draw.getrandbits(32), keys, place)
+    place = ROBOT_PLACE if is_place else rng.choice(("", "tcp://bob"))
+    session = end.session(rng.getrandbits(32), keys, place)
     talk_honestly(end, session, session.hello())
     assert keys.id_by_place.get(ROBOT_PLACE) == (end.keys.stored_keys[0].id if is_place else None)
     if state_of(end) != STATE_RUNNING:
-        start_long_drive(end, draw)
-    if "greeted" not in how:
-        session = end.session(draw.getrandbits(32), keys, place)
-    cleared = draw.choice((0, *CLEARED_FLAGS, OWNED | OWNERS))
-    if how.startswith("id"):
-        greets = draw.choice(({HELLO}, {HELLO, AUTHENTICATE}, {HELLO, STATUS}))
-        attacker = Between(end, draw, cleared, lambda f: f.number in greets, other_id=OTHER_ID)
+        start_long_drive(end, rng)
+    if "greeted" not in disguise:
+        session = end.session(rng.getrandbits(32), keys, place)
+    cleared = rng.choice((0, *CLEARED_FLAGS, OWNED | OWNERS))
+    if disguise.startswith("id"):
+        greets = rng.choice(({HELLO}, {HELLO, AUTHENTICATE}, {HELLO, STATUS}))
+        attacker = Between(end, rng, cleared, lambda f: f.number in greets, other_id=OTHER_ID)
     else:
-        attacker = Between(strange, draw, cleared, pass_frame, cuts_stops=draw.random() < 0.5)
-    kind = draw.choice(("stop", "upload", "live", "hello"))
+        attacker = Between(strange, rng, cleared, pass_frame, cuts_stops=rng.random() < 0.5)
+    kind = rng.choice(("stop", "upload", "live", "hello"))
     request: PendingRequest[Any] | None = None
     if kind == "stop":
         session.stop(0)
@@ -268,21 +270,25 @@ def run_stranger_trial(end: End, strange: Stranger, seed: int) -> str:
     else:
         request = session.hello()
     names = talk(attacker, session, request)
-    assert "STOPPED" not in names, f"seed {seed}: {how}: a stop that nobody has heard is confirmed"
+    assert "STOPPED" not in names, (
+        f"seed {seed}: {disguise}: a stop that nobody has heard is confirmed"
+    )
     if request is None:
         assert "LOST" in names, f"seed {seed}: {names}"
     else:
         expected = [OTHER_ROBOT]
-        if "greeted" in how:
+        if "greeted" in disguise:
             expected += [UNPROVEN, LOST]
-        if how == "robot, greeted":  # a frame with the right epoch by chance, but without the key
+        if (
+            disguise == "robot, greeted"
+        ):  # a frame with the right epoch by chance, but without the key
             expected.append(STATUSES["WRONG_KEY"])
         status = request.outcome.status if request.outcome else LOST
-        assert status in expected, f"seed {seed}: {how}: {kind}: {status}"
+        assert status in expected, f"seed {seed}: {disguise}: {kind}: {status}"
     shown_bytes = {key.key for key in end.keys.stored_keys}
     assert {key.key for key in keys.stored_keys} == shown_bytes, f"seed {seed}: a key is lost"
     assert state_of(end) == STATE_RUNNING, "nobody has reached it"
-    return f"{kind}, {how}"
+    return f"{kind}, {disguise}"
 
 
 def test_a_stranger_with_its_own_id_is_not_trusted() -> None:
@@ -331,11 +337,11 @@ def test_no_relay_can_remove_the_seals() -> None:
     assert len({run_trial(end, seed) for seed in range(1, TRIAL_COUNT + 1)}) == 10  # each kind
 
 
-@pytest.mark.parametrize("which", [KEY_OWNER, KEY_TEACHER])
+@pytest.mark.parametrize("key_kind", [KEY_OWNER, KEY_TEACHER])
 @pytest.mark.parametrize("is_greeted", [False, True])
-def test_a_received_stop_is_confirmed(which: int, is_greeted: bool) -> None:
+def test_a_received_stop_is_confirmed(key_kind: int, is_greeted: bool) -> None:
     """A robot that seals says so under the seal, with a teacher's key alone, too."""
-    end = End(which)
+    end = End(key_kind)
     start_long_drive(end, random.Random(3))
     session = end.session(99, end.keys)
     if is_greeted:

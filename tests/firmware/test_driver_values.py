@@ -29,17 +29,17 @@ SET_VALUES = {"number": ("0", "4"), "yes/no": ("FALSE", "TRUE")}  # values in a 
 SET_MS = 500
 
 
-def _analog(board: Board, wiring: Wiring, is_much: bool) -> None:
+def _set_analog(board: Board, wiring: Wiring, is_large: bool) -> None:
     channel = wiring.pins["pin"] - (CHIPS[board.board].first_analog or 0)
-    board.analog(channel, 5000 if is_much else 0)
+    board.set_analog(channel, 5000 if is_large else 0)
 
 
 # The inputs of a sensor, small or large, by the use of its pin.
 INPUTS_BY_ABILITY: dict[str, Callable[[Board, Wiring, bool], None]] = {
-    "analog": _analog,
-    "input": lambda board, wiring, is_much: board.level(0, wiring.pins["pin"], is_much),
-    "echo": lambda board, wiring, is_much: board.echoes(
-        wiring.pins["trigger"], wiring.pins["echo"], [5000 if is_much else 175]
+    "analog": _set_analog,
+    "input": lambda board, wiring, is_large: board.set_level(0, wiring.pins["pin"], is_large),
+    "echo": lambda board, wiring, is_large: board.set_echoes(
+        wiring.pins["trigger"], wiring.pins["echo"], [5000 if is_large else 175]
     ),
 }
 
@@ -66,9 +66,9 @@ def test_every_driver_is_wired_to_simulated_pins(motors: str) -> None:
     """Therefore a new driver leaves the others the pins they need, wherever its name is in the
     list.
     """
-    draw = random.Random(motors)
+    rng = random.Random(motors)
     for _ in range(20):
-        devices = draw.sample(DEVICES * 2, len(DEVICES) * 2)
+        devices = rng.sample(DEVICES * 2, len(DEVICES) * 2)
         board = robot_with(motors, devices).board
         for driver in devices:
             wirings = board.sensors if isinstance(driver, SensorDriver) else board.actuators
@@ -82,11 +82,11 @@ def test_every_driver_is_wired_to_simulated_pins(motors: str) -> None:
 def test_a_sensor_reads_its_simulated_input(driver: Driver) -> None:
     name, wiring = name_and_wiring(driver)
     readings = set()
-    for is_much in (False, True):
+    for is_large in (False, True):
         board = start_board(
             ROBOT_WITH_ALL_DRIVERS, SHOW_PROGRAMS[driver.used_by.split()[1]].format(name)
         )
-        INPUTS_BY_ABILITY[driver.pins[-1].ability](board, wiring, is_much)
+        INPUTS_BY_ABILITY[driver.pins[-1].ability](board, wiring, is_large)
         readings.add(board.run_for(START_MS + 100).motors(START_MS + 95))
     assert len(readings) == 2, "its reading is the same whatever it feels"
 

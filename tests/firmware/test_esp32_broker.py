@@ -19,7 +19,7 @@ from tests.support.esp32_broker import (
     connect_to_broker,
     list_present_robots,
     motor_state,
-    until,
+    wait_until,
 )
 from tests.support.esp32_radio import RawClient, set_network_in_reach, talk
 from tests.support.esp32_wifi import (
@@ -94,7 +94,7 @@ def test_lack_of_memory_for_a_broker_is_reported_and_the_connection_retried(
     talk(robot, [(None, owner)], 1500)
     assert broker_settings_of(robot, owner)[1] == "NO_TLS"
     robot.radio("H", b"\0")
-    until(robot, lambda: broker_settings_of(robot, owner)[1] == "READY")
+    wait_until(robot, lambda: broker_settings_of(robot, owner)[1] == "READY")
 
 
 # -- the road -----------------------------------------------------------------------------------
@@ -133,7 +133,7 @@ def test_the_broker_is_stored_reported_and_forgotten(broker: Mosquitto) -> None:
     assert broker_settings_of(robot, owner) == ("STATION", "READY", "aula")
     restarted_robot = restart_with_school_in_reach(robot)
     teacher = broker.connect_client()
-    until(
+    wait_until(
         restarted_robot,
         lambda: (
             list_present_robots(restarted_robot, teacher) == [RobotPresence(ID, "tini-5678", True)]
@@ -174,7 +174,7 @@ def test_a_broker_may_require_name_and_password(
     assert b"40 letters" in robot.read_kept().entries[BROKER_KEY], "it has come whole"
     wrong_settings = own_broker.settings("aula", user, "another one")
     assert wait_for_outcome(robot, [(None, owner)], owner.use_broker(wrong_settings)) == "OK"
-    until(robot, lambda: broker_settings_of(robot, owner)[1] == "REFUSED")
+    wait_until(robot, lambda: broker_settings_of(robot, owner)[1] == "REFUSED")
     for access in (Access(), Access(user, "another one"), Access("who", "x")):
         with pytest.raises(PortError) as failure:
             own_broker.connect_client(access)
@@ -213,7 +213,7 @@ def test_setting_the_same_broker_repeatedly_keeps_one_connection(broker: Mosquit
     robot, owner = connect_to_broker(broker, Keys())
     for _ in range(20):
         assert wait_for_outcome(robot, [(None, owner)], owner.use_broker(broker.settings())) == "OK"
-    until(robot, lambda: broker_settings_of(robot, owner)[1] == "READY", 10_000)
+    wait_until(robot, lambda: broker_settings_of(robot, owner)[1] == "READY", 10_000)
 
 
 # -- stops --------------------------------------------------------------------------------------
@@ -314,11 +314,11 @@ def test_replayed_messages_have_no_effect(
     heard_bytes: list[bytes] = []
     send = AtBroker.send
 
-    def sends(end: AtBroker, data: bytes) -> None:
+    def record_and_send(end: AtBroker, data: bytes) -> None:
         heard_bytes.append(data)
         send(end, data)
 
-    monkeypatch.setattr(AtBroker, "send", sends)
+    monkeypatch.setattr(AtBroker, "send", record_and_send)
     robot, _, _, clients = start_drive(broker, "SI|F(0.2, 80)")
     thief = broker.connect_client()
     talk(robot, clients, 400)
@@ -374,7 +374,7 @@ def test_losing_the_broker_ends_the_run(brokers: Callable[..., Mosquitto], failu
     school_in_reach(robot)
     cable = remote(robot, keys, 20)
     assert wait_for_outcome(robot, [(None, cable)], cable.ping()) == "OK"
-    until(robot, lambda: broker_settings_of(robot, cable)[1] == "READY", 15_000)
+    wait_until(robot, lambda: broker_settings_of(robot, cable)[1] == "READY", 15_000)
     next_client, end = remote(robot, keys, 13), own_broker.connect_client()
     talk(robot, [], AUTHORITY_MS + 3000)
     assert upload_text(robot, [(AtBroker(robot, end), next_client)], next_client) == "OK"
@@ -431,10 +431,10 @@ def test_a_robot_returns_to_a_broker_that_was_lost_after_any_byte(seed: int) -> 
     robot, owner = join_network(Keys())
     settings = wifi.BrokerSettings(LOCAL_ADDRESS, port, "aula", b"", b"")
     assert wait_for_outcome(robot, [(None, owner)], owner.use_broker(settings)) == "OK"
-    most = sum(map(len, BROKER_ANSWERS.values()))
+    answer_size = sum(map(len, BROKER_ANSWERS.values()))
     for _ in range(3):
-        cutting_broker.connect(robot, rng.randrange(1, most))
-        assert b"+tini-5678" in cutting_broker.connect(robot, most + 1)
+        cutting_broker.connect(robot, rng.randrange(1, answer_size))
+        assert b"+tini-5678" in cutting_broker.connect(robot, answer_size + 1)
     cutting_broker.server.close()
 
 
@@ -443,7 +443,7 @@ def test_a_client_that_leaves_or_hangs_ends_its_run_and_makes_room(broker: Mosqu
     robot, _, _, [(end, _)] = start_drive(broker, keys=keys)
     assert end
     end.leave()
-    until(robot, lambda: motor_state(robot) == "MOTORS 0 0", 200)
+    wait_until(robot, lambda: motor_state(robot) == "MOTORS 0 0", 200)
     second, next_client = broker.connect_client(), remote(robot, keys, 13)
     clients: Ends = [(AtBroker(robot, second), next_client)]
     second.attend()

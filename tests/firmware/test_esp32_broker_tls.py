@@ -23,7 +23,7 @@ from tests.support.esp32_broker import (
     connect_to_broker,
     list_present_robots,
     motor_state,
-    until,
+    wait_until,
 )
 from tests.support.esp32_radio import announce_computer, talk
 from tests.support.esp32_wifi import join_network, remote, restart_with_school_in_reach
@@ -116,7 +116,7 @@ def test_an_untrusted_broker_gets_no_data(
         settings = settings._replace(port=brokers().port)
     robot, owner = join_network(Keys())
     assert wait_for_outcome(robot, [(None, owner)], owner.use_broker(settings)) == "OK"
-    until(robot, lambda: broker_settings_of(robot, owner)[1] == state)
+    wait_until(robot, lambda: broker_settings_of(robot, owner)[1] == state)
     talk(robot, [(None, owner)], 1000)
     assert broker_settings_of(robot, owner)[1] == state, "it stays while the robot tries again"
     if state != "NO_TLS":
@@ -125,7 +125,7 @@ def test_an_untrusted_broker_gets_no_data(
             presence for presence in list_present_robots(robot, teacher) if presence.is_here
         ]
         assert wait_for_outcome(robot, [(None, owner)], owner.use_broker(room.settings())) == "OK"
-        until(robot, lambda: broker_settings_of(robot, owner)[1] == "READY")
+        wait_until(robot, lambda: broker_settings_of(robot, owner)[1] == "READY")
 
 
 @drawn
@@ -135,7 +135,7 @@ def test_a_newly_set_broker_does_not_inherit_the_previous_error(room: Room, tmp_
     announce_computer(robot, NAME, "127.0.0.1", wait_ms=3000)
     wrong_settings = room.settings(trust=Authority(tmp_path).der)
     assert wait_for_outcome(robot, [(None, owner)], owner.use_broker(wrong_settings)) == "OK"
-    until(robot, lambda: broker_settings_of(robot, owner)[1] == "UNTRUSTED")
+    wait_until(robot, lambda: broker_settings_of(robot, owner)[1] == "UNTRUSTED")
     talk(robot, [(None, owner)], 4500)
     assert broker_settings_of(robot, owner)[1] == "UNTRUSTED"
     assert wait_for_outcome(robot, [(None, owner)], owner.use_broker(room.settings())) == "OK"
@@ -173,8 +173,8 @@ def test_an_old_tls_is_refused(tmp_path: Path, version: ssl.TLSVersion, state: s
         tls = wifi.Tls(authority.der, TODAY)
         settings = PLAIN._replace(port=server.getsockname()[1], name=NAME.encode(), tls=tls)
         assert wait_for_outcome(robot, [(None, owner)], owner.use_broker(settings)) == "OK"
-        until(robot, lambda: not thread.is_alive())
-        until(robot, lambda: broker_settings_of(robot, owner)[1] == state)
+        wait_until(robot, lambda: not thread.is_alive())
+        wait_until(robot, lambda: broker_settings_of(robot, owner)[1] == state)
         thread.join()
     assert spoken_texts == ([] if state == "NO_TLS" else ["TLSv1.2"])
 
@@ -197,7 +197,7 @@ def test_only_the_brokers_own_certificate_is_accepted_without_its_authority(
     ):  # fmt: skip
         assert wait_for_outcome(robot, [(None, owner)], owner.use_broker(settings)) == "OK"
         talk(robot, [(None, owner)], 50)
-        until(robot, lambda state=state: broker_settings_of(robot, owner)[1] == state)  # type: ignore[misc]
+        wait_until(robot, lambda state=state: broker_settings_of(robot, owner)[1] == state)  # type: ignore[misc]
 
 
 def test_a_broker_that_dies_ends_the_run_over_tls(
@@ -212,10 +212,10 @@ def test_a_broker_that_dies_ends_the_run_over_tls(
     talk(robot, clients, 500)
     assert motor_state(robot) == "MOTORS 80 80"
     own_room.broker.kill()
-    begun_ms = robot.now_ms
+    began_ms = robot.now_ms
     while motor_state(robot) != "MOTORS 0 0":
         talk(robot, clients, 5)
-        assert robot.now_ms < begun_ms + DEAD_MAN_MS
+        assert robot.now_ms < began_ms + DEAD_MAN_MS
 
 
 @drawn
@@ -245,7 +245,7 @@ def test_a_network_that_breaks_off_in_the_middle_of_tls_is_tried_again(room: Roo
     try:
         settings = room.settings()._replace(port=cuts.port)
         assert wait_for_outcome(robot, [(None, owner)], owner.use_broker(settings)) == "OK"
-        until(robot, lambda: broker_settings_of(robot, owner)[1] == "READY")
+        wait_until(robot, lambda: broker_settings_of(robot, owner)[1] == "READY")
         assert cuts.bytes_left[:2] == [0, 0] and cuts.bytes_left[2] < 1500
         teacher = room.connect()
         remote_session = remote(robot, keys)
@@ -267,7 +267,7 @@ def test_a_broker_is_found_by_name_or_at_its_last_address(
     settings = brokers().settings()._replace(name=name.encode(), address=address)
     assert wait_for_outcome(robot, [(None, owner)], owner.use_broker(settings)) == "OK"
     if is_found:
-        until(robot, lambda: broker_settings_of(robot, owner)[1] == "READY")
+        wait_until(robot, lambda: broker_settings_of(robot, owner)[1] == "READY")
     talk(robot, [(None, owner)], 500)
     assert broker_settings_of(robot, owner)[1] == ("READY" if is_found else "SEARCHING")
 
@@ -304,7 +304,7 @@ def test_the_broker_survives_a_reset_and_a_failed_replacement(room: Room) -> Non
     assert broker_settings_of(robot, owner) == ("STATION", "READY", "aula")
     restarted_robot = restart_with_school_in_reach(robot)
     teacher = room.connect()
-    until(
+    wait_until(
         restarted_robot,
         lambda: (
             list_present_robots(restarted_robot, teacher) == [RobotPresence(ID, "tini-5678", True)]

@@ -78,9 +78,9 @@ class Driven:
 
     def _step(self, number: int, side: str, step: int) -> None:
         self._counted[number] += step
-        level = self._counted[number] % 2 == 1
-        second = [(0, self._pins[f"{side}_b"], level == (step < 0))] if self.has_two else []
-        self.robot.edges(*second, (SETTLES_US, self._pins[side], level))
+        is_high = self._counted[number] % 2 == 1
+        second = [(0, self._pins[f"{side}_b"], is_high == (step < 0))] if self.has_two else []
+        self.robot.edges(*second, (SETTLES_US, self._pins[side], is_high))
 
     def drive(self, text: str, limit_ms: int = 8000) -> Event:
         """Run a program to its end and a little longer; return the cause of its end."""

@@ -70,8 +70,8 @@ def memory_with_network() -> tuple[Kept, RobotKey]:
 
 class Guest(NamedTuple):
     end: End | None  # None: the cable
-    who: Client
-    what: str
+    client: Client
+    kind: str
     place: int
 
 
@@ -86,7 +86,7 @@ class Scene:
         self.places = [0]  # slots used so far
         self.nonce = 10
 
-    def new(self, role: str) -> Client:
+    def add_client(self, role: str) -> Client:
         self.nonce += 1
         keys = Keys()
         keys.stored_keys = [memory_with_network()[1]]
@@ -101,7 +101,7 @@ class Scene:
         if place != NETWORK and any(guest.place == place for guest in self.guests):
             return None
         make = TRANSPORT_MAKERS[place]
-        guest = Guest(make and make(self.robot), self.new(role), role, place)
+        guest = Guest(make and make(self.robot), self.add_client(role), role, place)
         self.guests.append(guest)
         self.places.append(place)
         self.talk(3)
@@ -139,13 +139,17 @@ def do_random_step(scene: Scene, rng: random.Random, is_soon: bool) -> None:
     elif kind == 3 and rng.random() < 0.3:
         scene.talk(1, rng.choice((1, 2)))
         scene.talk(60)
-    elif isinstance(guest.who, RawClient):
-        guest.who.to_send = rng.choice((rng.choice(LINES), rng.choice(PIECES), bytes(STOP_BYTES)))
+    elif isinstance(guest.client, RawClient):
+        guest.client.to_send = rng.choice(
+            (rng.choice(LINES), rng.choice(PIECES), bytes(STOP_BYTES))
+        )
         scene.talk(rng.choice((2, 30, 300)))
-    elif isinstance(guest.who, Session):
-        but = {"identify"} if is_soon else set()
-        but |= {"a claim"} if guest.what == "stranger" else set()
-        REQUEST_MAKERS[rng.choice([ask for ask in REQUEST_MAKERS if ask not in but])](guest.who)
+    elif isinstance(guest.client, Session):
+        excluded = {"identify"} if is_soon else set()
+        excluded |= {"a claim"} if guest.kind == "stranger" else set()
+        REQUEST_MAKERS[rng.choice([ask for ask in REQUEST_MAKERS if ask not in excluded])](
+            guest.client
+        )
         scene.talk(rng.choice((1, 5, 30, 300)))
 
 
@@ -161,7 +165,7 @@ def observe(scene: Scene, first: int, rng: random.Random) -> list[object]:
         assert guest
         guests.append(guest)
     for _ in range(rng.choice((2, 4))):
-        begun_ms, session = robot.now_ms, rng.choice(guests).who
+        began_ms, session = robot.now_ms, rng.choice(guests).client
         name, request = "", None
         if isinstance(session, Session):
             name = rng.choice([question for question in REQUEST_MAKERS if question != "a claim"])
@@ -174,7 +178,7 @@ def observe(scene: Scene, first: int, rng: random.Random) -> list[object]:
             if isinstance(client, Session):
                 states.append([without_counts(event) for event in client.events()])
         rows = (line.split(" ", 1) for line in robot.did)
-        states.append([(int(ms) - begun_ms, action) for ms, action in rows])
+        states.append([(int(ms) - began_ms, action) for ms, action in rows])
         robot.did.clear()
     scene.talk(1200)  # a text answer waits after a frame that did not report the stop
     texts = [client.received for _, client, *_ in guests if isinstance(client, RawClient)]

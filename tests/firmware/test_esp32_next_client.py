@@ -167,11 +167,11 @@ def test_bytes_of_two_clients_do_not_form_a_stop(make: Make, pause_ms: int) -> N
 STATUS, PING_SEQ = BY_NAME["STATUS"].number, 77
 
 
-@pytest.mark.sampled("most_bytes")
-@pytest.mark.parametrize("most_bytes", [0, 1, 7, 30, 1000])
+@pytest.mark.sampled("max_bytes")
+@pytest.mark.parametrize("max_bytes", [0, 1, 7, 30, 1000])
 @pytest.mark.parametrize("requests", [1, 5, 60])
 def test_the_next_client_gets_no_remainder_of_a_partial_message(
-    most_bytes: int, requests: int
+    max_bytes: int, requests: int
 ) -> None:
     """The network accepts a few bytes at a time, and the client before may leave at any moment."""
     robot, end, _ = far_owner(Keys())
@@ -179,7 +179,7 @@ def test_the_next_client_gets_no_remainder_of_a_partial_message(
     frames = b"".join(encode_frame(Frame(STATUS, seq, 0)) for seq in range(requests))
     rests = 0
     for moment_ms in (1, 2, 3, 5, 9, 100):
-        limit_accepted_bytes(robot, most_bytes)
+        limit_accepted_bytes(robot, max_bytes)
         first = RawClient(b"\0" + frames)
         talk(robot, [(end := Network(robot), first)], moment_ms)
         end.leave()
@@ -192,7 +192,7 @@ def test_the_next_client_gets_no_remainder_of_a_partial_message(
         answers = [decode_frame(data) for data in next_client.received.split(b"\0") if data]
         assert [answer and answer.seq for answer in answers] == [PING_SEQ], moment_ms
         rests += len(first.received) < len(next_client.received)
-    assert rests or most_bytes == 1000
+    assert rests or max_bytes == 1000
 
 
 def test_the_next_client_gets_no_packet_beyond_its_own_mtu() -> None:

@@ -52,17 +52,17 @@ def sniff(robot: Esp32Robot, data: bytes) -> bool | None:
 
 
 def test_the_robot_classifies_clients_like_a_virtual_one(knocked_at: Esp32Robot) -> None:
-    chance = Random(5)
+    rng = Random(5)
     words = [*(data[:300] for data in FOREIGN_GREETINGS.values()), b"PING|\n", b"POST = 5\n",
              b"GET  /", b"S", b"a\xc3\xb1o = 5\n", b"https://x", b"HTTP/1.1",
              b"http:", b"\r\n", b"\0", b" ",
              b"\t", b"*", b"POST", b"pri", b"!x", b"="]  # fmt: skip
     for _ in range(3000):
-        data = b"".join(chance.choice(words) for _ in range(chance.randrange(1, 4)))[:400]
-        data = data[: chance.randrange(len(data) + 1)]
-        if chance.random() < 0.3 and data:
-            cut_index = chance.randrange(len(data))
-            data = data[:cut_index] + chance.randbytes(1) + data[cut_index + 1 :]
+        data = b"".join(rng.choice(words) for _ in range(rng.randrange(1, 4)))[:400]
+        data = data[: rng.randrange(len(data) + 1)]
+        if rng.random() < 0.3 and data:
+            cut_index = rng.randrange(len(data))
+            data = data[:cut_index] + rng.randbytes(1) + data[cut_index + 1 :]
         assert sniff(knocked_at, data) is sniff_robot_client(data), data
     for data in FOREIGN_GREETINGS.values():
         for k in range(min(len(data), 400)):

@@ -45,7 +45,7 @@ def test_the_driver_gets_all_readings_whatever_other_clients_do(then: str) -> No
         clients = [(None, driver), (end, other_session)]
         assert wait_for_outcome(robot, clients, other_session.hello()) == "OK"
     for number in range(1, CHANGE_COUNT + 1):
-        robot.analog(LIGHT_PIN, 400 * number)
+        robot.set_analog(LIGHT_PIN, 400 * number)
         talk(robot, clients, 300)
     values = [event.value for event in readings(driver) if event.sensor == LIGHT]
     assert len(values) >= CHANGE_COUNT and values == sorted(values)

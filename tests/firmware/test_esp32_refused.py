@@ -9,7 +9,7 @@ from collections.abc import Iterator
 import pytest
 
 from tests.machines.esp32 import Esp32Robot
-from tests.support.esp32_broker import broker_settings_of, until
+from tests.support.esp32_broker import broker_settings_of, wait_until
 from tests.support.esp32_radio import radios, talk
 from tests.support.esp32_wifi import HOTSPOT, join_network, make_owned_robot, state
 from tests.support.mosquitto import LOCAL_ADDRESS
@@ -98,12 +98,12 @@ def test_a_broker_that_refuses_the_subscription_is_not_ready(
 ) -> None:
     """For example, the broker's access list may omit the class."""
     robot, owner = robot_at_broker(broker := StrictBroker(granted_bytes), brokers)
-    until(robot, lambda: broker.asked >= 3)
+    wait_until(robot, lambda: broker.asked >= 3)
     assert broker_settings_of(robot, owner)[1] == "REFUSED", "and it is tried again"
     assert broker.published == [], "nobody is told that the robot is there"
     broker.granted = b"\0\0"
-    until(robot, lambda: broker_settings_of(robot, owner)[1] == "READY")
-    until(robot, lambda: len(broker.published) == 1)
+    wait_until(robot, lambda: broker_settings_of(robot, owner)[1] == "READY")
+    wait_until(robot, lambda: len(broker.published) == 1)
 
 
 @pytest.mark.sampled("granted_bytes")
@@ -112,7 +112,7 @@ def test_an_answer_to_another_request_is_ignored(
     granted_bytes: bytes, brokers: list[StrictBroker]
 ) -> None:
     robot, owner = robot_at_broker(broker := StrictBroker(granted_bytes), brokers)
-    until(robot, lambda: broker.asked >= 2)
+    wait_until(robot, lambda: broker.asked >= 2)
     assert broker_settings_of(robot, owner)[1] == "SEARCHING"
     assert broker.published == []
 
@@ -128,9 +128,9 @@ def test_a_stop_before_the_answer_counts(brokers: list[StrictBroker]) -> None:
         assert wait_for_outcome(robot, [(None, owner)], status) == "OK" and status.outcome
         return bool(status.outcome.values.state == STATE_STOPPED)
 
-    until(robot, is_stopped)
+    wait_until(robot, is_stopped)
     assert wait_for_outcome(robot, [(None, owner)], owner.hello()) == "OK"
-    until(robot, lambda: broker_settings_of(robot, owner)[1] == "READY")
+    wait_until(robot, lambda: broker_settings_of(robot, owner)[1] == "READY")
     assert broker.asked == 1, "it was the first answer"
 
 

@@ -11,9 +11,9 @@ from tiniscript.link.payloads import HelloReply
 
 
 def hello(robot: Esp32Robot, nonce: int = 1) -> HelloReply:
-    who = session(nonce, robot)
-    request = who.hello()
-    assert wait_for_outcome(robot, [(None, who)], request) == "OK" and request.outcome
+    client = session(nonce, robot)
+    request = client.hello()
+    assert wait_for_outcome(robot, [(None, client)], request) == "OK" and request.outcome
     return request.outcome.values
 
 
@@ -29,10 +29,10 @@ def boot(kept_memory: Kept, reset: int = POWER_ON) -> Esp32Robot:
 
 def running(text: str) -> Esp32Robot:
     robot = boot(Kept(b"", {}, 0))
-    who = session(2, robot)
-    upload = who.upload(image_of(text), saves=False)
-    assert wait_for_outcome(robot, [(None, who)], upload) == "OK"
-    talk(robot, [(None, who)], 500)
+    client = session(2, robot)
+    upload = client.upload(image_of(text), saves=False)
+    assert wait_for_outcome(robot, [(None, client)], upload) == "OK"
+    talk(robot, [(None, client)], 500)
     return robot
 
 

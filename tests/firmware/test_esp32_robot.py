@@ -222,12 +222,12 @@ def test_a_disconnected_bluetooth_module_ends_an_attached_run() -> None:
     state = 22
     text = TEXTS["tinibot32"].replace("[board]\n", f"[board]\nbluetooth_state = {state}\n")
     robot = Esp32Robot(read(text, "mine"))
-    robot.digital(state, True)
+    robot.set_level(state, True)
     switched_on(robot)
     session = computer()
     send(robot, session, AWAY_PROGRAM)
     robot.talk(session, 100)
-    robot.digital(state, False)
+    robot.set_level(state, False)
     robot.talk(session, 500)
     assert actions_of(robot) == ["MOTORS 80 80", "MOTORS 0 0"]
     assert [event.cause for event in session.events() if event.name == "STOPPED"] == [4]
@@ -273,12 +273,12 @@ def test_actuators_are_set_and_released_by_a_stop() -> None:
 def test_sensors_are_read() -> None:
     robot = wire_robot(TWO_WIRE)
     trigger, echo = 18, 19
-    robot.analog(34, 4095)
-    robot.analog(35, 400)
-    robot.analog(32, 100)
-    robot.digital(22, False)
+    robot.set_analog(34, 4095)
+    robot.set_analog(35, 400)
+    robot.set_analog(32, 100)
+    robot.set_level(22, False)
     assert run_and_list_values(robot, "SI|SHOW(DISTANCE)") == [400_000], "it hears nothing"
-    robot.sonar(trigger, echo, 50)
+    robot.set_sonar_distance(trigger, echo, 50)
     right, left, distance, *others = run_and_list_values(
         robot, "SI|SHOW(LIGHT_R);SHOW(LIGHT_L);SHOW(DISTANCE);SHOW(BUMP);SHOW(DARK)"
     )
@@ -289,7 +289,7 @@ def test_sensors_are_read() -> None:
 
 def test_an_echo_missed_during_an_erase_is_measured_again() -> None:
     robot, session = switched_on(Esp32Robot()), computer()
-    robot.sonar(18, 19, 50)
+    robot.set_sonar_distance(18, 19, 50)
     robot.erase(150)
     send(robot, session, "SI|LOOP(60);SHOW(DISTANCE);W(0.07);END_LOOP")
     wait_until_saved(robot, session)

@@ -164,20 +164,20 @@ class Life:
         began_ms = self.robot.now_ms
         talk(self.robot, [], 2)
         joins = radios(self.robot).joins
-        seen: list[object] = []
+        observations: list[object] = []
         for number in range(count):
             self.robot.wait(began_ms + FIRST_LOOK_MS + number * LOOK_MS - self.robot.now_ms)
             radio_state = radios(self.robot)
             wifi_reply = wifi_reply_of(self.robot, [(None, self.owner)], self.owner)
-            told = (
+            reported = (
                 wifi.MODES[wifi_reply.mode],
                 wifi.STATES[wifi_reply.state],
                 wifi_reply.network,
                 wifi.address(wifi_reply),
             )
             radio_state = radio_state._replace(joins=radio_state.joins - joins)
-            seen.append((told, radio_state, bool(port_of(self.robot))))
-        return seen
+            observations.append((reported, radio_state, bool(port_of(self.robot))))
+        return observations
 
     def restarts_until_it_rests(self) -> int:
         for count in range(4):
@@ -200,12 +200,14 @@ def check_radio(seed: int) -> str:
     used_life.robot.wait(rng.choice((50, 1000, JOIN_RETRY_MS)))
     last_network = rng.choice((SECOND_NETWORK, SECOND_NETWORK, SECOND_NETWORK, HOTSPOT, None))
     count = rng.choice((3, 3, 25, 60))  # up to 2 s, 18 s and 44 s
-    seen = []
+    observations_of_both = []
     for life in (used_life, Life()):
         life.move_to(end, last_network or SCHOOL)
         life.use(last_network)
-        seen.append([*life.looks(count), life.restarts_until_it_rests()])
-    assert seen[0] == seen[1], first_difference(*seen)
+        observations_of_both.append([*life.looks(count), life.restarts_until_it_rests()])
+    assert observations_of_both[0] == observations_of_both[1], first_difference(
+        *observations_of_both
+    )
     return end if last_network and not last_network.is_access_point else "else"
 
 

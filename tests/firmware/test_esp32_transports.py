@@ -286,9 +286,9 @@ def test_slow_notifications_delay_nobody_else() -> None:
     clients: Ends = [(None, driver), (LowEnergy(robot, look_interval=100), slow_session)]
     request = slow_session.status()
     assert upload_text(robot, clients, driver) == "OK"
-    begun_ms = robot.now_ms
+    began_ms = robot.now_ms
     assert wait_for_outcome(robot, clients, driver.ping()) == "OK"
-    assert robot.now_ms - begun_ms < 30
+    assert robot.now_ms - began_ms < 30
     assert wait_for_outcome(robot, clients, request, 20_000) == "OK"
     slow_session.stop(robot.now_ms)
     talk(robot, clients, 20)

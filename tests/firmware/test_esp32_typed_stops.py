@@ -54,7 +54,7 @@ def check_stop(
     assert has_stopped(robot), description
 
 
-def stops_after_every_prefix(
+def check_stop_after_every_prefix(
     robot: Esp32Robot, driver: Session, driver_end: End | None, end: End | None
 ) -> None:
     for k, (name, prefix) in enumerate(ALL_PREFIXES.items()):
@@ -67,7 +67,7 @@ def stops_after_every_prefix(
 @pytest.mark.parametrize("make", RADIOS)
 def test_a_typed_stop_over_a_radio_stops_a_run_of_the_cable(make: Make) -> None:
     robot = boot()
-    stops_after_every_prefix(robot, session(1, robot), None, make(robot))
+    check_stop_after_every_prefix(robot, session(1, robot), None, make(robot))
 
 
 def test_a_typed_stop_over_a_network_works() -> None:
@@ -75,7 +75,7 @@ def test_a_typed_stop_over_a_network_works() -> None:
     robot, owner = join_network(Keys())
     end = Network(robot)
     end.send(b"\0\0")
-    stops_after_every_prefix(robot, owner, None, end)
+    check_stop_after_every_prefix(robot, owner, None, end)
     end.leave()
 
 
@@ -121,7 +121,7 @@ def test_a_stranger_who_sends_no_line_end_stops(words: list[bytes]) -> None:
 
 def test_a_typed_stop_over_the_cable_stops_a_run_of_a_radio() -> None:
     robot = boot()
-    stops_after_every_prefix(robot, session(1, robot), RADIOS[0](robot), None)
+    check_stop_after_every_prefix(robot, session(1, robot), RADIOS[0](robot), None)
 
 
 @pytest.mark.parametrize("make", RADIOS)
@@ -152,11 +152,13 @@ def test_a_stop_is_recognized_even_if_the_buffer_is_full(make: Make, stop: bytes
         clients = start_drive(robot, driver)
         line_before = (line * ROOM)[: ROOM - bytes_left - 1] + b"\n"
         check_stop(robot, end, clients, line_before + stop, f"{bytes_left} of {stop!r}")
-    for lost in range(len(stop)):
+    for lost_count in range(len(stop)):
         clients = start_drive(robot, driver)
-        end.send(b"(" * ROOM + b"\n" + stop[:lost])
+        end.send(b"(" * ROOM + b"\n" + stop[:lost_count])
         talk(robot, clients, 20)
-        check_stop(robot, end, clients, stop[lost:], f"the rest after {lost} of {stop!r}")
+        check_stop(
+            robot, end, clients, stop[lost_count:], f"the rest after {lost_count} of {stop!r}"
+        )
 
 
 @pytest.mark.parametrize("make", RADIOS)
@@ -284,10 +286,10 @@ def test_a_stop_of_a_client_that_leaves_keeps_nobody_from_driving(make: Make) ->
         talk(robot, [(end, RawClient())], left_ms)
         end.leave()
         talk(robot, [], 300)  # until all of it is read
-        who = session(100 + number, robot)
+        client = session(100 + number, robot)
         end = make(robot)
-        assert upload_text(robot, [(end, who)], who) == "OK"
-        talk(robot, [(end, who)], 20)
+        assert upload_text(robot, [(end, client)], client) == "OK"
+        talk(robot, [(end, client)], 20)
         outcome = (len(waiting), first, second, left_ms)
         assert motor_actions(robot)[-1] == "MOTORS 80 80", outcome
         end.leave()

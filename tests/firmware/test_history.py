@@ -144,7 +144,7 @@ class Scene:
     ) -> None:
         self.robot = kind(KIT, memory, write_ms=write_ms, clock_ms=clock_ms - START_UPTIME_MS)
         self.robot.now_ms = START_UPTIME_MS
-        self.robot.sense(*READINGS)
+        self.robot.set_readings(*READINGS)
         self.robot.wait(300)
         self.nonce = 0
         self.rings = rings
@@ -161,11 +161,11 @@ class Scene:
         self.session = Session(self.nonce, 9600, KIT.fingerprint, keys=ring)
         return self.session
 
-    def note(self, action: str, begun_ms: int, data: bytes = b"") -> None:
+    def note(self, action: str, began_ms: int, data: bytes = b"") -> None:
         """Record the results of a step; times count from its beginning."""
         self.has_faulted |= any(line.endswith("FAULTED") for line in self.robot.did)
         rows = (line.split(" ", 1) for line in self.robot.did)
-        self.observed.append((action, [(int(ms) - begun_ms, event) for ms, event in rows]))
+        self.observed.append((action, [(int(ms) - began_ms, event) for ms, event in rows]))
         lines = re.findall(rb"// [^\r\n]*\r\n", data)
         lines = [line for line in lines if line != NO_ZERO_LINE]  # this line may be late
         self.observed += [line for line in lines if self.is_saved or line != LOST_PROGRAM_LINE]
@@ -177,34 +177,34 @@ class Scene:
             self.observed.append(self.robot.is_lit)
         self.robot.did.clear()
 
-    def ask(self, name: str, make: Asks, rng: random.Random, most_ms: int = 20_000) -> None:
+    def ask(self, name: str, make: Asks, rng: random.Random, limit_ms: int = 20_000) -> None:
         """Ask for something, and give up after a while."""
-        begun_ms = self.robot.now_ms
+        began_ms = self.robot.now_ms
         request = make(self.session, rng)
-        while request.outcome is None and self.robot.now_ms < begun_ms + most_ms:
+        while request.outcome is None and self.robot.now_ms < began_ms + limit_ms:
             self.robot.talk(self.session, 1)
         but = () if self.is_saved else ("slot", "saved")
         self.observed.append((name, answer_without_counts(request, *but)))
-        self.note(name, begun_ms)
+        self.note(name, began_ms)
 
     def talk(self, milliseconds: int) -> None:
-        begun_ms = self.robot.now_ms
+        began_ms = self.robot.now_ms
         self.robot.talk(self.session, milliseconds)
-        self.note("talks", begun_ms)
+        self.note("talks", began_ms)
 
     def say(self, data: bytes, wait_ms: int) -> None:
-        begun_ms = self.robot.now_ms
+        began_ms = self.robot.now_ms
         reply = self.robot.latched_while(max(1, len(data)), data, is_spread=True)[0]
         reply += self.robot.wait(wait_ms)
-        self.note(f"says {data!r}", begun_ms, reply)
+        self.note(f"says {data!r}", began_ms, reply)
 
     def press(self, milliseconds: int) -> None:
-        begun_ms = self.robot.now_ms
+        began_ms = self.robot.now_ms
         self.robot.talk(self.session, 1, BUTTON_PRESSED)
         self.robot.talk(self.session, milliseconds)
         self.robot.talk(self.session, 1, BUTTON_RELEASED)
         self.robot.talk(self.session, RUN_MS)
-        self.note("a press", begun_ms)
+        self.note("a press", began_ms)
 
 
 # -- before -------------------------------------------------------------------------------------
@@ -272,12 +272,12 @@ def toggle_button(scene: Scene, rng: random.Random, requests: dict[str, Asks]) -
 
 def lower_supply(scene: Scene, rng: random.Random, requests: dict[str, Asks]) -> None:
     """Lower the supply for a while, in which something may be saved."""
-    scene.robot.supply(True)
+    scene.robot.set_supply(True)
     for _ in range(rng.choice((1, 2))):
         send_request(scene, rng, CHANGING_REQUESTS)
         scene.robot.talk(scene.session, rng.choice((0, 700)))
     if rng.random() < 0.5:
-        scene.robot.supply(False)
+        scene.robot.set_supply(False)
 
 
 def disturb(scene: Scene, rng: random.Random, requests: dict[str, Asks]) -> None:
@@ -349,7 +349,7 @@ def settle(scene: Scene, is_saved: bool, rng: random.Random) -> bytes:
         robot.push()
         sessions = map(scene.next_session, CLIENT_KINDS)  # any of them may have claimed it
         assert any(robot.until(each, each.allow_text(False), 60_000) == OK for each in sessions)
-    robot.supply(False)
+    robot.set_supply(False)
     if scene.is_down:
         robot.step(flags=BUTTON_RELEASED)
         scene.is_down = False
@@ -457,7 +457,7 @@ def observe(scene: Scene, stop: Behind, rng: random.Random) -> list[object]:
 def stored_data_at_end(scene: Scene, stop: Behind) -> list[object]:
     """Stop the robot; return its identity, and its stored data."""
     robot, session = scene.robot, scene.next_session()
-    robot.supply(False)
+    robot.set_supply(False)
     robot.wait(SILENCE_MS, bytes(4))
     robot.until(session, session.hello())
     assert session.robot
@@ -481,8 +481,8 @@ def new_memory() -> bytes:
 def claimed_memory_and_keys() -> tuple[bytes, KeyRings]:
     """Return the memory of a robot with an owner and a teacher, and everybody's keys."""
     table, keys = OwnedRobot(new_memory()), Keys()
-    for which in (KEY_OWNER, KEY_TEACHER):
-        table.claim_session(keys, which)
+    for key_kind in (KEY_OWNER, KEY_TEACHER):
+        table.claim_session(keys, key_kind)
     table.robot.wait(1000)
     owner_key, teacher_key = keys.stored_keys
     wrong_key = owner_key._replace(key=bytes(range(16)))

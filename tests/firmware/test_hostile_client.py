@@ -89,7 +89,7 @@ class Client:
     def ask_by_name(self, name: str, payload: bytes = b"") -> bytes:
         return self.ask(BY_NAME[name].number, payload)
 
-    def hello(self) -> None:
+    def send_hello(self) -> None:
         kit = self.rng.choice((KIT.fingerprint, 7)).to_bytes(2, "little")
         nonce = self.rng.choice((5, self.rng.getrandbits(32))).to_bytes(4, "little")
         assert self.ask_by_name("HELLO", bytes((MAJOR, MINOR, 2, 0)) + kit + nonce)[0] == STATUS_OK
@@ -103,10 +103,10 @@ class Client:
             (*(message.number for message in REQUESTS[1:]), rng.choice(UNKNOWN_NUMBERS), 0)
         )
         fields = BY_NUMBER[number].request if number in BY_NUMBER else ()
-        least_bytes, most_bytes = sizes(fields)
-        most_bytes = min(most_bytes, payload_bytes(LARGEST_NUMBER))
+        min_bytes, max_bytes = sizes(fields)
+        max_bytes = min(max_bytes, payload_bytes(LARGEST_NUMBER))
         payload = rng.randbytes(
-            rng.choice((least_bytes, most_bytes, rng.randrange(most_bytes + 1), rng.randrange(57)))
+            rng.choice((min_bytes, max_bytes, rng.randrange(max_bytes + 1), rng.randrange(57)))
         )
         payload = payload[: MOST_RETIRED if number in RETIRED_NUMBERS else None]
         if fields and fields[0].name == "mode" and payload:
@@ -121,7 +121,7 @@ class Client:
         is_known = number in BY_NUMBER and BY_NUMBER[number].name not in RADIO_MESSAGES
         if not is_known:
             assert status == STATUSES["UNKNOWN_MESSAGE"]
-        elif not least_bytes <= len(payload) <= most_bytes:
+        elif not min_bytes <= len(payload) <= max_bytes:
             assert status == STATUSES["BAD_LENGTH"]
         elif is_stale and number >= FIRST_ACTING:
             assert status == STATUS_STALE
@@ -153,7 +153,7 @@ class Client:
             assert reply[0] != STATUS_OK
         while reply[0] == STATUS_OK and offset < len(body):
             if rng.random() < 0.1:
-                rng.choice((self.hello, self.zeros, self.line, self.request))()
+                rng.choice((self.send_hello, self.send_zeros, self.send_line, self.request))()
             piece = body[offset : offset + rng.choice((1, 20, 53))]
             reply = self.ask_by_name("DATA", offset.to_bytes(2, "little") + piece)
             if reply[0] == STATUS_OK:
@@ -176,28 +176,29 @@ class Client:
             image += reply[3:]
         return image
 
-    def zeros(self) -> None:
+    def send_zeros(self) -> None:
         self.put(bytes(self.rng.choice((4, 8, 9, 31))))
         assert self.robot.is_latched
 
-    def line(self) -> None:
+    def send_line(self) -> None:
         self.put(self.rng.choice(LINES), 5)
 
-    def noise(self) -> None:
+    def send_noise(self) -> None:
         self.put(self.rng.randbytes(self.rng.randrange(1, 90)) + b"\0")
 
-    def silence(self) -> None:
+    def keep_silent(self) -> None:
         self.put(b"", self.rng.choice((30, 999, 1001, 2500)))
 
-    def button(self) -> None:
+    def press_button(self) -> None:
         self.receive(self.robot.step(flags=1))
         self.put(b"", self.rng.choice((40, 2100)))
         self.receive(self.robot.step(flags=2))
 
-    def turn(self) -> None:
+    def take_turn(self) -> None:
         self.rng.choice((
-            self.request, self.request, self.request, self.repeat_frame, self.upload, self.hello,
-            self.zeros, self.line, self.noise, self.silence, self.button,
+            self.request, self.request, self.request, self.repeat_frame, self.upload,
+            self.send_hello, self.send_zeros, self.send_line, self.send_noise, self.keep_silent,
+            self.press_button,
         ))()  # fmt: skip
 
     def check_obeys(self) -> None:
@@ -213,9 +214,9 @@ class Client:
 
 def play(seed: int) -> None:
     client = Client(seed)
-    client.hello()
+    client.send_hello()
     for _ in range(TURN_COUNT):
-        client.turn()
+        client.take_turn()
     client.check_obeys()
 
 

@@ -66,8 +66,8 @@ def test_blanks_and_line_ends_do_not_change_a_key_line(
     robot = boot(kind)
     type_text(robot, "KEY_LEFT\n")  # after this line, keys are not mentioned
 
-    def blanks(least: int = 0) -> str:
-        return "".join(rng.choices(" \t", k=rng.choice((least, 1, 2, 30))))
+    def blanks(min_count: int = 0) -> str:
+        return "".join(rng.choices(" \t", k=rng.choice((min_count, 1, 2, 30))))
 
     for _ in range(20):
         for line, held_state in STATE_BY_LINE:

@@ -56,7 +56,7 @@ def test_the_button_confirms_a_claim_and_the_robot_keeps_the_key() -> None:
 
 def claim_then_press_too_briefly(table: OwnedRobot, session: Session) -> PendingRequest[Any]:
     request = session.claim(KEY_OWNER)
-    table.pass_time(session, 300)
+    table.advance_time(session, 300)
     table.hold(session, 1900)
     return request
 
@@ -69,10 +69,10 @@ def press_then_claim(table: OwnedRobot, session: Session) -> PendingRequest[Any]
 
 def claim_then_spikes_on_the_wire(table: OwnedRobot, session: Session) -> PendingRequest[Any]:
     request = session.claim(KEY_OWNER)
-    table.pass_time(session, 300)
+    table.advance_time(session, 300)
     for _ in range(40):  # edges down that no press follows
-        table.pass_time(session, 1, BUTTON_PRESSED)
-        table.pass_time(session, 99)
+        table.advance_time(session, 1, BUTTON_PRESSED)
+        table.advance_time(session, 99)
     return request
 
 
@@ -97,7 +97,7 @@ class Late:
         self.ways = [Way(Fault("late", late_ms=late_ms), False, Random(0)) for _ in range(2)]
         self.is_cut = False
 
-    def pass_time(self, milliseconds: int, flags: int = 0) -> None:
+    def advance_time(self, milliseconds: int, flags: int = 0) -> None:
         """Let time pass, with a button event at its beginning."""
         robot, (to_robot, to_computer) = self.table.robot, self.ways
         end_ms = robot.now_ms + milliseconds
@@ -112,7 +112,7 @@ class Late:
 
     def until(self, request: PendingRequest[Any]) -> None:
         while request.outcome is None:
-            self.pass_time(LINE_STEP_MS)
+            self.advance_time(LINE_STEP_MS)
 
 
 LINE_STEP_MS = 5
@@ -134,17 +134,17 @@ def test_a_claim_ends_within_the_documented_time(late_ms: int, ending: str) -> N
     began_ms = table.robot.now_ms
     request = session.claim(KEY_OWNER)
     line.is_cut = ending.startswith("cut")
-    line.pass_time(WAIT_LIMIT_MS - 6000)
+    line.advance_time(WAIT_LIMIT_MS - 6000)
     line.is_cut = ending == "cut"
     if ending[:4] in ("held", "take"):
-        line.pass_time(1, BUTTON_PRESSED)
-        line.pass_time(30)
-        line.pass_time(1970, BUTTON_HELD)
+        line.advance_time(1, BUTTON_PRESSED)
+        line.advance_time(30)
+        line.advance_time(1970, BUTTON_HELD)
         line.is_cut = ending == "held and cut"
         while (
             ending == "taken and cut" and keys.stored_keys[0].is_pending and request.outcome is None
         ):
-            line.pass_time(LINE_STEP_MS)
+            line.advance_time(LINE_STEP_MS)
         line.is_cut |= ending == "taken and cut"
     line.until(request)
     assert table.robot.now_ms <= began_ms + WAIT_LIMIT_MS + 2 * LINE_STEP_MS
@@ -159,14 +159,14 @@ def test_a_claim_without_frames_expires_and_the_next_one_succeeds() -> None:
     first, second = Keys(1), Keys(50)
     early_session, late_session = table.session(first, nonce=1), table.session(second, nonce=2)
     early_session.claim(KEY_OWNER)
-    table.pass_time(early_session, 300)
-    table.pass_time(None, 2100)  # out of reach
+    table.advance_time(early_session, 300)
+    table.advance_time(None, 2100)  # out of reach
     table.hold(None, 2500)
     assert owner_of(table, table.session(nonce=5)) == FREE
     early_session.claim(KEY_OWNER)
-    table.pass_time(early_session, 300)
+    table.advance_time(early_session, 300)
     request = late_session.claim(KEY_OWNER)  # its session is alive
-    table.pass_time(late_session, 300)
+    table.advance_time(late_session, 300)
     table.hold(late_session, 2200)
     assert table.outcome(late_session, request) == "OK"
     next_session = table.session(first, nonce=3)
@@ -174,8 +174,8 @@ def test_a_claim_without_frames_expires_and_the_next_one_succeeds() -> None:
     assert table.tries(table.session(first, nonce=4)) != "OK"
     assert table.tries(table.session(second, nonce=5)) == "OK"
     stranger = table.session(Keys(99), nonce=9)
-    for which in (KEY_OWNER, KEY_TEACHER):
-        assert table.claim(stranger, which) == "NOT_OWNER"
+    for key_kind in (KEY_OWNER, KEY_TEACHER):
+        assert table.claim(stranger, key_kind) == "NOT_OWNER"
 
 
 @pytest.mark.sampled("cut_ms", keep=9)
@@ -184,11 +184,11 @@ def test_a_power_cut_leaves_the_old_or_the_new_key(cut_ms: int) -> None:
     table, keys = OwnedRobot(), Keys()
     session = table.claim_session(keys)
     session.claim(KEY_OWNER)
-    table.pass_time(session, 300)
-    table.pass_time(session, 1, BUTTON_PRESSED)
-    table.pass_time(session, 31)
-    table.pass_time(session, 2100, BUTTON_HELD)
-    table.pass_time(session, cut_ms)
+    table.advance_time(session, 300)
+    table.advance_time(session, 1, BUTTON_PRESSED)
+    table.advance_time(session, 31)
+    table.advance_time(session, 2100, BUTTON_HELD)
+    table.advance_time(session, cut_ms)
     restarted = OwnedRobot(table.robot.memory(), seed=cut_ms)
     assert len(keys.stored_keys) in (1, 2)
     assert owner_of(restarted, restarted.session(keys, nonce=77)) == OWNED_BY_YOU
@@ -199,16 +199,16 @@ def test_a_claim_with_a_lost_answer_is_settled_by_using_its_key() -> None:
     session = table.session(keys)
     for _ in range(7):  # claims that were left before the button was held
         session.claim(KEY_OWNER)
-        table.pass_time(session, 300)
+        table.advance_time(session, 300)
         session = table.session(keys, nonce=len(keys.stored_keys) + 1)
     keys_left = list(keys.stored_keys)
     assert len(keys_left) == 7
     session.claim(KEY_OWNER)
-    table.pass_time(session, 300)
-    table.pass_time(session, 1, BUTTON_PRESSED)
-    table.pass_time(session, 30)
-    table.pass_time(session, 2100, BUTTON_HELD)
-    table.pass_time(session, 400)
+    table.advance_time(session, 300)
+    table.advance_time(session, 1, BUTTON_PRESSED)
+    table.advance_time(session, 30)
+    table.advance_time(session, 2100, BUTTON_HELD)
+    table.advance_time(session, 400)
     table.robot.step(flags=BUTTON_RELEASED)
     keys.stored_keys = [keys_left[0], keys.stored_keys[-1]._replace(is_pending=True)]
     later_session = table.session(keys, nonce=99)
@@ -239,7 +239,7 @@ def test_a_claim_is_stored_despite_an_unsaved_name_that_stays_reported() -> None
         table.robot.wear_out(place + 12)  # the first letter of its name
     session = table.session(keys)
     assert table.outcome(session, session.name(b"NEW")) == "NOT_KEPT"
-    table.pass_time(session, 500)  # the robot has tried again
+    table.advance_time(session, 500)  # the robot has tried again
     assert table.claim(session) == "OK"
     assert table.outcome(session, session.name(b"NEW")) == "NOT_KEPT"
     restarted_robot = OwnedRobot(table.robot.memory())
@@ -252,7 +252,7 @@ def test_a_name_is_stored_despite_an_unsaved_key() -> None:
     assert table.outcome(session, session.name(b"NEW")) == "OK"
     table.robot.wear_out(536 + 8)
     assert table.claim(session) == "NOT_KEPT"
-    table.pass_time(session, 500)
+    table.advance_time(session, 500)
     assert table.outcome(session, session.name(b"NEW")) == "OK"
 
 
@@ -269,7 +269,7 @@ def test_each_claim_needs_its_own_press(first: int, second: int, by: str) -> Non
         session = table.session(keys, nonce=8)
     memory_before = table.robot.memory()
     request = session.claim(second)
-    table.pass_time(session, 3000)
+    table.advance_time(session, 3000)
     assert request.outcome is None and table.robot.memory() == memory_before
     table.hold(session, 2200)
     assert table.outcome(session, request) == "OK"
@@ -277,15 +277,15 @@ def test_each_claim_needs_its_own_press(first: int, second: int, by: str) -> Non
 
 @pytest.mark.parametrize("silent_ms", [0, AUTHORITY_MS + 100])
 @pytest.mark.parametrize("has_pressed", [False, True])
-@pytest.mark.parametrize("which", [KEY_OWNER, KEY_TEACHER])
+@pytest.mark.parametrize("key_kind", [KEY_OWNER, KEY_TEACHER])
 def test_a_press_for_an_absent_claimant_confirms_nobody_else(
-    which: int, has_pressed: bool, silent_ms: int
+    key_kind: int, has_pressed: bool, silent_ms: int
 ) -> None:
     """Nor does that client's request turn the next press into another client's."""
     table, keys = OwnedRobot(), Keys()
     first = table.session()
     assert table.outcome(first, first.hello()) == "OK"
-    answer = table.ask_unsealed(first, "CLAIM", bytes([which]) + bytes([70] * KEY_BYTES))
+    answer = table.ask_unsealed(first, "CLAIM", bytes([key_kind]) + bytes([70] * KEY_BYTES))
     assert answer[0] == STATUSES["HOLD_BUTTON"]
     if has_pressed:
         table.hold(first, 2200)
@@ -295,8 +295,8 @@ def test_a_press_for_an_absent_claimant_confirms_nobody_else(
     assert table.outcome(session, session.hello()) == "OK"
     if not has_pressed:
         table.hold(session, 2200)  # has no effect
-    request = session.claim(which)
-    table.pass_time(session, 3000)
+    request = session.claim(key_kind)
+    table.advance_time(session, 3000)
     assert request.outcome is None and table.robot.memory() == memory_before
     table.hold(session, 2200)
     assert table.outcome(session, request) == "OK"
@@ -340,7 +340,7 @@ def test_a_teachers_key_drives_and_releases_a_robot() -> None:
     session = table.session(teacher, nonce=4)
     assert table.tries(session) == "OK"
     session.stop(table.robot.now_ms)
-    table.pass_time(session, 100)
+    table.advance_time(session, 100)
     teacher_session = table.session(pupil, nonce=5)
     assert table.outcome(teacher_session, teacher_session.disown(KEY_TEACHER)) == "NOT_OWNER"
     session = table.session(teacher, nonce=6)
@@ -360,7 +360,7 @@ def test_a_teachers_stop_is_released_by_the_teacher_or_the_button() -> None:
     assert table.outcome(teacher_session, teacher_session.start()) == "HELD_BACK"
     assert table.outcome(teacher_session, teacher_session.clear()) == "HELD_BACK"
     assert table.outcome(teacher_session, teacher_session.allow_text(True)) == "OK"
-    table.pass_time(None, 5000)
+    table.advance_time(None, 5000)
     assert b"teacher" in table.robot.wait(100, b"SI|F(1, 80)\n")
     assert not [line for line in table.robot.did if "MOTORS" in line]
     session = table.session(teacher, nonce=8)
@@ -371,7 +371,7 @@ def test_a_teachers_stop_is_released_by_the_teacher_or_the_button() -> None:
     assert table.outcome(session, session.hold_back()) == "OK"
     table.hold(None, 200)
     teacher_session = table.session(pupil, nonce=11)
-    table.pass_time(teacher_session, 10)
+    table.advance_time(teacher_session, 10)
     assert state_of(table, teacher_session) == STATE_RUNNING
 
 
@@ -400,14 +400,14 @@ def test_a_robot_stays_blocked_by_a_teachers_stop_until_released(seed: int) -> N
             is_held_back = False
         elif act == "stops":
             session.stop(table.robot.now_ms)
-            table.pass_time(session, 100)
+            table.advance_time(session, 100)
         elif act == "presses":
             table.hold(None, 200)
             is_held_back = False
         else:
-            wanted_text = "HELD_BACK" if is_held_back else "OK"
-            assert table.outcome(session, session.clear()) == wanted_text
-            assert table.outcome(session, session.start()) == wanted_text
+            expected_text = "HELD_BACK" if is_held_back else "OK"
+            assert table.outcome(session, session.clear()) == expected_text
+            assert table.outcome(session, session.start()) == expected_text
 
 
 # -- forgetting, text, identifying -----------------------------------------------------------------
@@ -423,9 +423,9 @@ def test_ten_seconds_of_the_button_from_power_on_forget_both_keys() -> None:
     )
     for milliseconds, owner in ((9800, OWNED_BY_YOU), (10_800, FREE)):
         table = OwnedRobot(table.robot.memory(), seed=milliseconds)
-        table.pass_time(None, 1, BUTTON_HELD)  # a button that was down before the reset
-        table.pass_time(None, milliseconds - 1)
-        table.pass_time(None, 1, BUTTON_RELEASED)
+        table.advance_time(None, 1, BUTTON_HELD)  # a button that was down before the reset
+        table.advance_time(None, milliseconds - 1)
+        table.advance_time(None, 1, BUTTON_RELEASED)
         session = table.session(keys)
         # Our own keys still have the old owner until they are forgotten.
         if owner == FREE and table.seals:
@@ -442,7 +442,7 @@ def test_text_drives_an_owned_robot_only_with_permission() -> None:
     session = table.claim_session(keys)
 
     def answer(line: bytes = b"SI|F(1, 80)\n") -> bytes:
-        table.pass_time(None, 5000)
+        table.advance_time(None, 5000)
         return table.robot.wait(200, line)
 
     assert b"tsc set text on" in answer()
@@ -465,7 +465,7 @@ def test_a_robot_identifies_itself_but_leaves_the_buzzer_to_a_program() -> None:
     table = OwnedRobot()
     session = table.session()
     assert table.outcome(session, session.identify()) == "OK"
-    table.pass_time(session, 3500)
+    table.advance_time(session, 3500)
     tune = [line.split()[1:] for line in table.robot.did if "BEEP" in line]
     number = session.robot.id if session.robot else 0
     assert tune == [["BEEP", str(131 * (4 + (number >> 3 * k) % 8)), "200"] for k in range(3)]
@@ -473,7 +473,7 @@ def test_a_robot_identifies_itself_but_leaves_the_buzzer_to_a_program() -> None:
     table.robot.did.clear()
     assert table.tries(session) == "OK"
     assert table.outcome(session, session.identify()) == "OK"
-    table.pass_time(session, 3500)
+    table.advance_time(session, 3500)
     assert not [line for line in table.robot.did if "BEEP" in line]
 
 
@@ -500,7 +500,7 @@ def test_each_identify_request_shows_the_robot_for_three_seconds(held_program: s
             its_seq = (session._seq + 1 + 2 * seq + is_second) % 256
             frame = Frame(BY_NAME["IDENTIFY"].number, its_seq, session._epoch)
             robot.step(b"\0" + encode_frame(frame))
-            begun_ms = robot.now_ms
+            began_ms = robot.now_ms
             was_lit = [robot.is_lit]
             for _ in range((before_ms if not is_second else STEPS * STEP_MS + 500) - 1):
                 robot.step()
@@ -509,7 +509,7 @@ def test_each_identify_request_shows_the_robot_for_three_seconds(held_program: s
         assert was_lit == expected, before_ms
         beeps = [line.split() for line in robot.did if "BEEP" in line]
         assert beeps == [
-            [str(begun_ms + k * STEP_MS), "BEEP", str(hertz), "200"] for k, hertz in enumerate(tune)
+            [str(began_ms + k * STEP_MS), "BEEP", str(hertz), "200"] for k, hertz in enumerate(tune)
         ]
 
 
@@ -522,7 +522,7 @@ def test_a_storm_of_identify_requests_affects_no_run_or_stop() -> None:
     number, epoch = BY_NAME["IDENTIFY"].number, session._epoch
     for seq in range(300):
         table.robot.step(b"\0" + encode_frame(Frame(number, seq % 256, epoch)))
-        table.pass_time(session, 9)
+        table.advance_time(session, 9)
     assert state_of(table, session) == STATE_RUNNING
     assert not [line for line in table.robot.did if "MOTORS" in line or "BEEP" in line]
     table.robot.step(bytes(4))
@@ -539,5 +539,5 @@ def test_firmware_without_owner_support_announces_this_and_is_free() -> None:
     assert table.tries(session) == "OK"
     for name, payload in (("CLAIM", bytes(17)), ("AUTHENTICATE", b"\0"), ("TEXT", b"\0")):
         assert table.ask_unsealed(session, name, payload)[0] == STATUSES["UNKNOWN_MESSAGE"]
-    table.pass_time(None, 5000)
+    table.advance_time(None, 5000)
     assert b"OK" in table.robot.wait(200, b"SI|F(1, 80)\n")

@@ -89,18 +89,18 @@ def test_a_program_is_saved_in_its_pauses_and_no_motor_runs_meanwhile(wait: int)
 @pytest.mark.parametrize("seed", range(12))
 def test_a_program_without_moves_is_eventually_stored_after_any_history(seed: int) -> None:
     """Sent again, after another one, after a power-off, or with a supply that was low."""
-    chance, texts = Random(seed), [f"SI|SHOW({number})" for number in range(3)]
+    rng, texts = Random(seed), [f"SI|SHOW({number})" for number in range(3)]
     robot, session = switched_on(), computer()
     for nonce in range(2, 8):
-        text = chance.choice(texts)
-        robot.supply(is_low=chance.random() < 0.3)
-        send(robot, session, text, saves=chance.random() < 0.7)
-        robot.talk(session, chance.randrange(1500))
-        if chance.random() < 0.5:
+        text = rng.choice(texts)
+        robot.set_supply(is_low=rng.random() < 0.3)
+        send(robot, session, text, saves=rng.random() < 0.7)
+        robot.talk(session, rng.randrange(1500))
+        if rng.random() < 0.5:
             robot, session = switched_on(robot.memory()), computer(nonce)
         else:
-            robot.supply(is_low=False)
-        text = chance.choice([text, *texts])
+            robot.set_supply(is_low=False)
+        text = rng.choice([text, *texts])
         send(robot, session, text)
         wait_until_saved(robot, session)
         assert program_after_power_off(robot) == bytes_of(text)
@@ -117,9 +117,9 @@ def test_a_name_is_confirmed_once_stored_and_deferred_while_driving() -> None:
         assert name_after_power_off(robot) == name.decode()
         assert session.robot is not None and session.robot.name == name.decode()
     send(robot, session, DRIVE_PROGRAM, saves=False)
-    begun_ms = robot.now_ms
+    began_ms = robot.now_ms
     assert robot.until(session, session.name(b"NEW")) == STATUSES["SAVING"]
-    assert robot.now_ms - begun_ms < 6000  # time that a command waits
+    assert robot.now_ms - began_ms < 6000  # time that a command waits
     assert session.is_running
     assert name_after_power_off(robot) == "ANA"
     session.stop(robot.now_ms)
@@ -253,14 +253,14 @@ def test_data_with_a_worn_last_byte_reads_as_empty() -> None:
 
 def test_a_low_supply_is_reported_and_waited_for() -> None:
     robot, session = switched_on(), computer()
-    robot.supply(is_low=True)
+    robot.set_supply(is_low=True)
     send(robot, session, "SI|SHOW(1)")
     robot.talk(session, 1500)
     assert read_saved_state(robot, session) == "LOW_SUPPLY"
     assert robot.until(session, session.name(b"NEW")) == STATUSES["LOW_SUPPLY"]
     assert program_after_power_off(robot) == b""
     assert marks(robot) == []
-    robot.supply(is_low=False)
+    robot.set_supply(is_low=False)
     robot.talk(session, 1500)
     assert read_saved_state(robot, session) == "STORED"
     assert robot.until(session, session.name(b"NEW")) == OK
@@ -271,7 +271,7 @@ def test_a_low_supply_is_reported_and_waited_for() -> None:
 def test_with_a_low_supply_another_program_can_still_run() -> None:
     """The earlier program is kept, and the pending one is given up for the new one."""
     robot, session = robot_with_saved_program()
-    robot.supply(is_low=True)
+    robot.set_supply(is_low=True)
     for power in (20, 30, 40):
         text = f"SI|F(0.1, {power}); " + "SHOW(1); " * 20
         send(robot, session, text)
@@ -281,7 +281,7 @@ def test_with_a_low_supply_another_program_can_still_run() -> None:
     assert program_after_power_off(robot) == bytes_of("SB|F(0.2, 80)")
     broken_upload(robot, session)
     assert push_button(robot) == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
-    robot.supply(is_low=False)
+    robot.set_supply(is_low=False)
     robot.talk(session, 3000)
     assert read_saved_state(robot, session) == "STORED"
     assert marks(robot) == []
@@ -292,27 +292,27 @@ def test_with_a_low_supply_another_program_can_still_run() -> None:
 def test_a_low_supply_at_any_time_keeps_the_last_program_intact(seed: int) -> None:
     """Uploads arrive at any moment of a save, and the program in memory at a power loss is always
     whole."""
-    chance = Random(seed)
+    rng = Random(seed)
     robot, session = robot_with_saved_program()
     programs, kept_index = (
         [bytes_of("SB|F(0.2, 80)")],
         0,
     )  # accepted programs, and the saved one
     for number in range(6):
-        robot.supply(is_low=chance.random() < 0.6)
-        robot.talk(session, chance.choice((1, 20, 60, 130, 400, 700)))
-        text = f"SI|SHOW({number}); " + "SHOW(1); " * chance.choice((2, 20, 40))
+        robot.set_supply(is_low=rng.random() < 0.6)
+        robot.talk(session, rng.choice((1, 20, 60, 130, 400, 700)))
+        text = f"SI|SHOW({number}); " + "SHOW(1); " * rng.choice((2, 20, 40))
         if robot.until(session, session.upload(image_of(text))) != OK:
             continue  # data being written is not overwritten
-        robot.talk(session, chance.choice((1, 20, 60, 130, 400, 700)))
-        if chance.random() < 0.7:  # the supply recovers during the wait
-            robot.supply(is_low=False)
-            robot.talk(session, chance.choice((1, 20, 60, 130, 400, 700)))
+        robot.talk(session, rng.choice((1, 20, 60, 130, 400, 700)))
+        if rng.random() < 0.7:  # the supply recovers during the wait
+            robot.set_supply(is_low=False)
+            robot.talk(session, rng.choice((1, 20, 60, 130, 400, 700)))
         programs.append(bytes_of(text))
         if read_saved_state(robot, session) == "STORED":
             kept_index = len(programs) - 1
         assert program_after_power_off(robot) in programs[kept_index:], number
-    robot.supply(is_low=False)
+    robot.set_supply(is_low=False)
     robot.talk(session, 3000)
     assert read_saved_state(robot, session) == "STORED"
     assert program_after_power_off(robot) == programs[-1]
@@ -325,14 +325,14 @@ def test_a_low_supply_after_an_interrupted_save_is_reported() -> None:
     assert memory[FIRST_SLOT] == 0
     memory[FIRST_SLOT + 3] = 0  # the third mark was not written
     robot, session = HostFirmware(KIT, bytes(memory)), computer()
-    robot.supply(is_low=True)
+    robot.set_supply(is_low=True)
     robot.wait(500)
     assert read_saved_state(robot, session) == "LOW_SUPPLY"
     low = STATUSES["LOW_SUPPLY"]
     assert robot.until(session, session.fetch()) == low
     assert robot.until(session, session.upload(image_of("SI|F(0.1, 50)"))) == low
     assert robot.until(session, session.name(b"NEW")) == low
-    robot.supply(is_low=False)
+    robot.set_supply(is_low=False)
     robot.wait(1000)
     assert read_saved_state(robot, session) == "STORED"
     assert program_after_power_off(robot) == bytes_of("SB|F(0.2, 80)")

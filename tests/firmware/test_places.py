@@ -41,11 +41,11 @@ def ask_for_place(robot: HostFirmware, seq: int, epoch: int) -> tuple[int, int, 
     return state, run, place
 
 
-def places(image: Image, begun_ms: int, sensed: int) -> Iterator[int]:
+def places(image: Image, began_ms: int, sensed: int) -> Iterator[int]:
     """Yield where the machine in Python is, each millisecond from its begin on."""
     robot = TracedRobot(KIT, lambda sensor: sensed)
-    machine = Machine(image.code, robot, len(KIT.readings), now_ms=begun_ms)
-    now_ms = begun_ms
+    machine = Machine(image.code, robot, len(KIT.readings), now_ms=began_ms)
+    now_ms = began_ms
     while machine.tick(now_ms, 1000) == "waiting":
         yield machine.offset
         now_ms += 1
@@ -54,15 +54,15 @@ def places(image: Image, begun_ms: int, sensed: int) -> Iterator[int]:
 @pytest.mark.parametrize("text", PROGRAMS)
 def test_reported_places_match_the_python_machine(text: str) -> None:
     robot, session = switched_on(), computer()
-    robot.sense(*[30_000] * len(KIT.sensors))
+    robot.set_readings(*[30_000] * len(KIT.sensors))
     assert robot.until(session, session.hello()) == OK
     assert session.robot and session.robot.values.features & PLACES
     image = image_of(text)
     assert robot.until(session, session.upload(image, saves=False)) == OK
-    begun_ms = int(robot.did[0].split()[0])
-    machine = places(image, begun_ms, 30_000)
+    began_ms = int(robot.did[0].split()[0])
+    machine = places(image, began_ms, 30_000)
     place_events_of = []
-    for _ in range(robot.now_ms - begun_ms + 1):
+    for _ in range(robot.now_ms - began_ms + 1):
         next(machine)
     for seq, at in enumerate(machine, 50):
         state, _, place = ask_for_place(robot, seq, session._epoch)

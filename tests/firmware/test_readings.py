@@ -59,9 +59,10 @@ def test_reporting_readings_does_not_change_the_timing_of_pins(seed: int) -> Non
 def test_missing_readings_are_reported_for_their_sensor(seed: int) -> None:
     """A line without delay reports all readings; a slow one the same, or that some are missing."""
     text = program(random.Random(seed)).replace("SHOW(", "W(0.001) // ")
-    every_ms = 5 if seed % 2 else 30
+    max_change_interval_ms = 5 if seed % 2 else 30
     full_run, limited_run = (
-        sensed_run(text, seed, True, ticks, every_ms) for ticks in (FAST_TICKS, BYTE_TICKS)
+        sensed_run(text, seed, True, ticks, max_change_interval_ms)
+        for ticks in (FAST_TICKS, BYTE_TICKS)
     )
     assert not [event for event in full_run.readings if event.sensor & AFTER_GAP]
     for sensor in range(len(KIT.sensors)):
@@ -86,7 +87,7 @@ def test_missing_readings_are_reported_for_their_sensor(seed: int) -> None:
 
 
 def test_a_too_slow_line_is_reported() -> None:
-    run = sensed_run(TOO_MANY_READINGS, 1, True, BYTE_TICKS, most_ms=5)
+    run = sensed_run(TOO_MANY_READINGS, 1, True, BYTE_TICKS, max_change_interval_ms=5)
     assert [event for event in run.readings if event.sensor & AFTER_GAP]
 
 
@@ -95,7 +96,10 @@ def test_a_too_slow_line_is_reported() -> None:
 def test_the_end_of_a_run_is_reported_after_its_readings(seed: int, wait_s: float) -> None:
     """However many of them the line had no room for."""
     text = f"SI|LOOP(40);X = LIGHT_L + LIGHT_R + DISTANCE;W({wait_s});END_LOOP"
-    names = [event.name for event in sensed_run(text, seed, True, BYTE_TICKS, most_ms=5).events]
+    names = [
+        event.name
+        for event in sensed_run(text, seed, True, BYTE_TICKS, max_change_interval_ms=5).events
+    ]
     assert names.count("DONE") == 1 and names[-1] == "DONE" and "READING" in names
 
 
@@ -130,8 +134,8 @@ def test_a_run_reports_the_readings_that_a_fresh_robot_reports(seed: int) -> Non
         if text != first_text:  # the same program starts anew, with its readings still to come
             upload = robot.session.upload(image_of(text), runs=False, saves=False)
             assert robot.robot.until(robot.session, upload) == OK
-        robot.robot.pace(FAST_TICKS)
-        robot.robot.sense(*values)
+        robot.robot.set_byte_ticks(FAST_TICKS)
+        robot.robot.set_readings(*values)
         robot.start()
         events = [event for event in robot.talk(300) if isinstance(event, ReadingEvent)]
         return [(event.sensor, event.value, event.ms) for event in events
@@ -141,7 +145,7 @@ def test_a_run_reports_the_readings_that_a_fresh_robot_reports(seed: int) -> Non
     for robot in robots:
         assert robot.robot.until(robot.session, robot.session.tell_readings(True)) == OK
     line_ticks, run_ms = rng.choice((FAST_TICKS, BYTE_TICKS)), rng.choice((5, 60, 300))
-    run_with_sensors(robots[0], rng, line_ticks, most_ms=5, run_ms=run_ms)
+    run_with_sensors(robots[0], rng, line_ticks, max_change_interval_ms=5, run_ms=run_ms)
     used_told, fresh_told = (readings_of(robot) for robot in robots)
     assert fresh_told and used_told == fresh_told, f"{first_text}\nthen {text}"
 

@@ -55,7 +55,7 @@ def run_image(image: Image, uno: Uno, is_told: bool, wait_ms: int) -> tuple[list
     since_cycle, rng = uno.cycle, random.Random(1)
     for _ in range(RUN_MS // CHANGE_INTERVAL_MS):
         for pin in LIGHT:
-            uno.analog(pin, rng.randrange(1024))
+            uno.set_analog(pin, rng.randrange(1024))
         wired_uno.run(CHANGE_INTERVAL_MS)
     reading_count = sum(event.name == "READING" for event in session.events())
     end = uno.cycle
@@ -83,7 +83,7 @@ def compare(text: str, uno: Uno) -> int:
     """Run a program with readings: it behaves as without them. Return the number of reported
     readings."""
     image = image_of(text, KIT)
-    changes_without_readings, told_count = run_image(image, uno, True, 0)
+    changes_without_readings, report_count = run_image(image, uno, True, 0)
     nearest_ms = inf
     for begin_ms in START_TIMES_MS:
         nearest_ms = min(
@@ -93,7 +93,7 @@ def compare(text: str, uno: Uno) -> int:
             ),
         )
         if nearest_ms <= LARGEST_DELAY_MS:
-            return told_count
+            return report_count
     raise AssertionError(f"{nearest_ms:.1f} ms from each run without: {text}")
 
 

@@ -66,7 +66,7 @@ class Program:
 @dataclass
 class Run:
     program: Program
-    begun_ms: int
+    began_ms: int
     ended: int = 0  # event by which the run ended itself
     ended_ms: int = 0
     ended_epoch: int = 0
@@ -92,7 +92,7 @@ class Client:
         self.rng = rng
         self.robot = KINDS[kind](KIT)
         self.robot.wait(300)
-        self.pace(rng.choice(PACES))
+        self.set_byte_ticks(rng.choice(PACES))
         self.heard = b""
         self.sent_ms = -ZERO_MS  # the last frame; none was sent since
         self.asked_ms = 0
@@ -109,15 +109,17 @@ class Client:
         self.log: list[object] = []
         self.is_new = True
         self.ask(HELLO, self.hello())
-        self.passes(LONGEST_ANSWER_MS)
+        self.advance_ms(LONGEST_ANSWER_MS)
 
-    def pace(self, ticks: int) -> None:
+    def set_byte_ticks(self, ticks: int) -> None:
         self.ticks = ticks
-        self.robot.pace(ticks)
+        self.robot.set_byte_ticks(ticks)
 
     # -- received ---------------------------------------------------------------------------------
 
-    def passes(self, milliseconds: int, data: bytes = b"", flags: int = 0, cause: int = 0) -> None:
+    def advance_ms(
+        self, milliseconds: int, data: bytes = b"", flags: int = 0, cause: int = 0
+    ) -> None:
         """Let time pass, with received bytes or another stop at its beginning."""
         robot = self.robot
         until_ms = robot.now_ms + milliseconds
@@ -172,10 +174,10 @@ class Client:
         for program in programs:
             self.runs.append(Run(program, self.robot.now_ms))
             self.log.append((self.robot.now_ms, "run", len(self.runs), program))
-            self.stood_until(self.robot.now_ms)
+            self.forget_stops_before(self.robot.now_ms)
         programs.clear()
 
-    def stood_until(self, now_ms: int) -> None:
+    def forget_stops_before(self, now_ms: int) -> None:
         """Forget the cause of the last stop: the robot is no longer stopped."""
         self.causes = [row for row in self.causes if row[0] >= now_ms - 1]
         if self.causes:
@@ -190,12 +192,12 @@ class Client:
                 self.log.append((self.robot.now_ms, frame))
                 self.take(frame, self.robot.now_ms - (len(packet) + 1) * self.ticks // TICKS)
 
-    def take(self, frame: Frame, begun_ms: int) -> None:
+    def take(self, frame: Frame, began_ms: int) -> None:
         self.take_epoch(frame)
         if frame.number == SHOW:
             self.take_value(frame.payload)
         elif frame.number == STOPPED:
-            self.take_stop(frame, begun_ms)
+            self.take_stop(frame, began_ms)
         elif frame.number in (FAULT, DONE):
             run = self.run_of(frame.payload[0])
             run.reported_ends.append(frame.number)
@@ -210,7 +212,7 @@ class Client:
             asked_number, asked_ms = self.waiting.pop(frame.seq, (0, 0))
             assert frame.is_reply and asked_number == frame.number, "a reply that nobody waits for"
             if asked_number == CLEAR and frame.payload[0] == OK:
-                self.stood_until(asked_ms + 1)
+                self.forget_stops_before(asked_ms + 1)
 
     def take_epoch(self, frame: Frame) -> None:
         """A reply may be ahead of the fault, which the next run's end may replace."""
@@ -233,7 +235,7 @@ class Client:
         first = run.program.first
         assert run.values == list(range(first, first + len(run.values))), "not the next value"
 
-    def take_stop(self, frame: Frame, begun_ms: int) -> None:
+    def take_stop(self, frame: Frame, began_ms: int) -> None:
         cause = frame.payload[0]
         assert self.stops, "a stop that is none, or told twice"
         cleared_ms = min(
@@ -245,7 +247,7 @@ class Client:
             first |= {cause for at_ms, cause in self.causes if at_ms >= cleared_ms}
         assert cause in first, f"not the first cause: {first}"
         assert frame.epoch != self.stops.pop(0).epoch, "a stop without an epoch"
-        self.stops = [stop for stop in self.stops if stop.at_ms >= begun_ms - 2]
+        self.stops = [stop for stop in self.stops if stop.at_ms >= began_ms - 2]
         for stop in self.stops:  # the stop may precede the writing of this message
             stop.must = False
         for run in self.runs:
@@ -299,7 +301,7 @@ class Client:
         self.sent_ms = self.asked_ms = now_ms
         if number == STOP:
             self.note_stop(MESSAGE)
-        self.passes(1, zero + encode_frame(frame) + bytes_after, 0, cause)
+        self.advance_ms(1, zero + encode_frame(frame) + bytes_after, 0, cause)
 
     def turn(self) -> None:
         """Ask for something, or let time pass; mostly something stops the robot at any moment."""
@@ -314,23 +316,23 @@ class Client:
         if rng.random() < 0.9 or self.robot.now_ms - self.asked_ms > 1000:
             self.ask(*self.request(), *((data, cause) if is_at_once else ()))
         if not is_at_once:
-            self.passes(rng.choice((1, 2, 5, 15, 40, 70)))
-            self.passes(1, data, flags, cause)
+            self.advance_ms(rng.choice((1, 2, 5, 15, 40, 70)))
+            self.advance_ms(1, data, flags, cause)
         if data:
             self.sent_ms = -ZERO_MS
         if flags == PRESSED:
-            self.passes(rng.choice((5, 40, 90)))
-            self.passes(1, b"", RELEASED)
-        self.passes(LONGEST_ANSWER_MS if self.waiting else 1)
+            self.advance_ms(rng.choice((5, 40, 90)))
+            self.advance_ms(1, b"", RELEASED)
+        self.advance_ms(LONGEST_ANSWER_MS if self.waiting else 1)
         assert not self.waiting, "no reply"
-        self.passes(rng.choice((1, 1, 60, 1100)))
+        self.advance_ms(rng.choice((1, 1, 60, 1100)))
 
     def settle(self) -> None:
-        self.passes(LONGEST_ANSWER_MS)
+        self.advance_ms(LONGEST_ANSWER_MS)
         assert not [stop for stop in self.stops if stop.must], "a stop that nobody is told of"
         for number, run in enumerate(self.runs, 1):
             # The button may start the next one while the line is busy.
-            begins_ms = [later_run.begun_ms for later_run in self.runs[number : number + 1]]
+            begins_ms = [later_run.began_ms for later_run in self.runs[number : number + 1]]
             is_overtaken = begins_ms and begins_ms[0] - run.ended_ms < LONGEST_OUTPUT_MS
             assert run.ended in (0, *run.reported_ends) or is_overtaken, f"no end of {number}"
             if run.ended == DONE:
@@ -372,15 +374,15 @@ def test_an_end_is_reported_for_its_own_run_though_another_waits(
     waited = 0
     for delay_ms in range(1, 40):
         client = Client(random.Random(delay_ms), kind)
-        client.pace(21)
+        client.set_byte_ticks(21)
         first, pressed_text = (fault, finished_text) if is_fault_first else (finished_text, fault)
         client.ask(PROGRAM, bytes((0,)) + client.code_of(pressed_text, Program(0, 0)))
-        client.passes(LONGEST_ANSWER_MS)
+        client.advance_ms(LONGEST_ANSWER_MS)
         client.ask(LIVE, bytes((RUN,)) + client.code_of(first, Program(0, 0)))
-        client.passes(delay_ms)
-        client.passes(1, b"", PRESSED, BUTTON)
-        client.passes(5)
-        client.passes(1, b"", RELEASED)
+        client.advance_ms(delay_ms)
+        client.advance_ms(1, b"", PRESSED, BUTTON)
+        client.advance_ms(5)
+        client.advance_ms(1, b"", RELEASED)
         client.settle()
         waited += len(client.runs) == 2 and sum(len(run.reported_ends) for run in client.runs) == 1
     assert waited, "the line was never busy at both ends"

@@ -88,8 +88,8 @@ def test_unsealed_frames_have_no_authority() -> None:
         frame = Frame(message.number, (session._seq + 1) & 0xFF, session._epoch, payload)
         reply = table.answer(frame)
         assert reply and reply.payload[0] == STATUSES["NOT_OWNER"] and not reply.is_sealed, message
-    for which in (0, 1):
-        claim = Frame(16, (session._seq + 1) & 0xFF, session._epoch, bytes([which]))
+    for key_kind in (0, 1):
+        claim = Frame(16, (session._seq + 1) & 0xFF, session._epoch, bytes([key_kind]))
         reply = table.answer(claim)
         assert reply and reply.payload[0] == STATUSES["NOT_OWNER"]
     assert state_of(table, session) == STATE_RUNNING
@@ -112,11 +112,11 @@ def test_a_stranger_keeps_no_program_running() -> None:
     for is_greeting in (False, True):
         table, session, _ = open_sealed_session()
         upload_and_capture(table, session, FOREVER)
-        begun_ms = table.robot.now_ms
+        began_ms = table.robot.now_ms
         if is_greeting:
             payload = bytes([MAJOR, *bytes(5), *b"abcd"])
             table.robot.wait(5, b"\0" + encode_frame(Frame(hello, 1, 0, payload)))
-        while table.robot.now_ms < begun_ms + 1010:
+        while table.robot.now_ms < began_ms + 1010:
             table.robot.wait(50, b"\0" + encode_frame(Frame(ping, 1, 0)))
         assert "MOTORS 0 0" in table.robot.did[-2] + table.robot.did[-1]
         frame = table.answer(Frame(ping, 1, 0))
@@ -126,10 +126,10 @@ def test_a_stranger_keeps_no_program_running() -> None:
 def test_a_relay_cannot_fake_success() -> None:
     """No frame reaches the robot, and its answers are forged in every way that works without the
     key."""
-    chance = random.Random(1)
+    rng = random.Random(1)
     table, session, _ = open_sealed_session()
     sent_bytes, replies = upload_and_capture(table, session, SHORT)
-    table.pass_time(session, 400)
+    table.advance_time(session, 400)
     request = session.live(image_of(SHORT).code)
     for _ in range(25_000):
         data = session.poll(table.robot.now_ms)
@@ -151,7 +151,7 @@ def test_a_relay_cannot_fake_success() -> None:
         ]:
             session.receive(packet, table.robot.now_ms)
             assert request.outcome is None
-        if chance.random() < 0.2:
+        if rng.random() < 0.2:
             lost_bytes = bytes([STATUSES["NOT_OWNER"], 0, 0])
             session.receive(
                 encode_frame(forged_frames[0]._replace(payload=lost_bytes)), table.robot.now_ms
@@ -210,7 +210,7 @@ def test_only_a_sealed_answer_confirms_a_stop() -> None:
     assert not [
         stopped_event for stopped_event in session.events() if stopped_event.name == "STOPPED"
     ]
-    table.pass_time(session, 50)
+    table.advance_time(session, 50)
     assert [event for event in session.events() if event.name == "STOPPED"]
     assert table.robot.is_latched
     upload_and_capture(table, session, FOREVER)
@@ -261,7 +261,7 @@ def test_an_expired_seal_is_renewed_for_the_same_request() -> None:
     seal_before = session._sealing.seal
     for _ in range(200):
         assert table.outcome(session, session.trim()) == "OK"
-    table.pass_time(None, 2100)
+    table.advance_time(None, 2100)
     table.robot.did.clear()
     request = session.live(image_of(SHORT).code)
     assert table.outcome(session, request) == "OK"
@@ -291,17 +291,17 @@ def test_a_seal_lost_during_an_upload_loses_no_piece(
     """It costs no time either: the computer waits for no piece that was under way."""
     image = image_of("SI|" + PIECES[pieces])
     table, session, _ = open_sealed_session()
-    begun_ms = table.robot.now_ms
+    began_ms = table.robot.now_ms
     assert table.outcome(session, session.upload(image, saves=False)) == "OK"
-    took_ms = table.robot.now_ms - begun_ms
-    for moment_ms in range(took_ms + 2):
+    duration_ms = table.robot.now_ms - began_ms
+    for moment_ms in range(duration_ms + 2):
         session.stop(table.robot.now_ms)
-        table.pass_time(session, 500)
+        table.advance_time(session, 500)
         table.robot.codes()
         request = session.upload(image, saves=False)
-        table.pass_time(session, moment_ms)
+        table.advance_time(session, moment_ms)
         loses(table, session)
-        limit_ms = MOST_TIMES * took_ms + AUTHENTICATION_MS
+        limit_ms = MOST_TIMES * duration_ms + AUTHENTICATION_MS
         assert table.robot.until(session, request, limit_ms) == OK, moment_ms
         assert table.robot.codes() == [image.code], moment_ms
 
@@ -318,7 +318,7 @@ def test_a_sealed_session_is_renewed_with_a_reset_robot() -> None:
 def test_sessions_with_the_same_numbers_have_different_seals() -> None:
     table, session, keys = open_sealed_session()
     sent_bytes, _ = upload_and_capture(table, session, SHORT)
-    table.pass_time(None, 3000)
+    table.advance_time(None, 3000)
     table.robot.did.clear()
     memory = table.robot.memory()
     for seed in (0x12345678, 7):  # the same noise at the start, and another one
@@ -353,27 +353,27 @@ def attack(frames: int, seed: int) -> Counter[str]:
     """Send a thief's frames into an owner's line, during its sealed session; return how many of
     each kind there were, how many were accepted, and how many stops were tried and obeyed.
     """
-    chance = random.Random(seed)
+    rng = random.Random(seed)
     table, session, _keys = open_sealed_session()
     recorded_frames, _ = upload_and_capture(table, session, SHORT)
     recorded = recorded_frames[-1:]
     robot = table.robot
-    thief = Thief(chance, recorded)
+    thief = Thief(rng, recorded)
     counts: Counter[str] = Counter(accepted=0)
     memory = robot.memory()
     for count in range(frames):
         if count % 500 == 0:
             if count:
-                table.pass_time(session, 300)
-                robot.wait(20, bytes(8) if chance.random() < 0.5 else b"\0" + _stop(chance) + b"\0")
+                table.advance_time(session, 300)
+                robot.wait(20, bytes(8) if rng.random() < 0.5 else b"\0" + _stop(rng) + b"\0")
                 assert robot.is_latched, f"frame {count} of seed {seed}: a stop is not obeyed"
                 counts["stops"] += 1
             thief.old_frames += thief.sent_frames[-3:]
-            session = table.session(_keys, nonce=chance.getrandbits(32))
+            session = table.session(_keys, nonce=rng.getrandbits(32))
             recorded_frames, replies = upload_and_capture(table, session, SHORT)
             thief.sent_frames = [frame for frame in recorded_frames if _is_sealed(frame)]
             thief.replies = [data for data in replies if _is_sealed(data)]
-            table.pass_time(session, 300)
+            table.advance_time(session, 300)
             robot.did.clear()
         if count % 200 == 100:  # the seal lives on
             assert table.outcome(session, session.status()) == "OK", f"seed {seed}, frame {count}"
@@ -394,10 +394,10 @@ def _is_sealed(wire: bytes) -> bool:
     return frame is not None and frame.is_sealed
 
 
-def _stop(chance: random.Random) -> bytes:
+def _stop(rng: random.Random) -> bytes:
     """Return a STOP with any seal, or none."""
-    payload = chance.randbytes(chance.choice((13, 20)))
-    return encoded(Frame(BY_NAME["STOP"].number, chance.randrange(256), 0, payload, is_sealed=True))
+    payload = rng.randbytes(rng.choice((13, 20)))
+    return encoded(Frame(BY_NAME["STOP"].number, rng.randrange(256), 0, payload, is_sealed=True))
 
 
 if __name__ == "__main__":

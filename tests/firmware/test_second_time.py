@@ -63,7 +63,7 @@ class Scene:
         self.count = 1
         self.before: int | None = None  # the run whose end is not reported during the second one
 
-    def next_computer(self) -> None:
+    def use_next_computer(self) -> None:
         self.count += 1
         self.session = computer(self.count)
 
@@ -130,20 +130,20 @@ START_ACTIONS: dict[str, Callable[[Scene, str], list[str]]] = {
 # Ways to end the first one. ---------------------------------------------------------------------
 
 
-def loses(scene: Scene) -> None:
+def lose_computer(scene: Scene) -> None:
     scene.robot.wait(2000)
 
 
-def stops(scene: Scene) -> None:
+def stop_by_message(scene: Scene) -> None:
     scene.session.stop(scene.robot.now_ms)
     scene.robot.talk(scene.session, 100)
 
 
-def breaks_off(scene: Scene) -> None:
+def break_off_upload(scene: Scene) -> None:
     """The next upload is cut, mostly in its middle, by the next computer."""
     scene.session.upload(image_of("SI|" + "F(0.1, 80); B(0.1, 60);" * 30, KIT))
     scene.robot.talk(scene.session, 3)
-    scene.next_computer()
+    scene.use_next_computer()
 
 
 END_ACTIONS: dict[str, Callable[[Scene], object]] = {
@@ -151,14 +151,14 @@ END_ACTIONS: dict[str, Callable[[Scene], object]] = {
     "zeros": lambda scene: scene.robot.step(bytes(8)),
     "a message": lambda scene: scene.robot.wait(5, STOP_MESSAGE),
     "a line": lambda scene: scene.robot.wait(5, b"\0S\n"),
-    "its computer": stops,
+    "its computer": stop_by_message,
     "the button": lambda scene: scene.robot.push(),
     "the cable": lambda scene: scene.robot.step(flags=8),
     "a stall": lambda scene: scene.robot.step(flags=4),
-    "silence": loses,
-    "an upload": breaks_off,
+    "silence": lose_computer,
+    "an upload": break_off_upload,
     "a block": lambda scene: type_text(scene.robot, "\nLOOP(2)\n"),
-    "a reset": lambda scene: scene.next_computer(),
+    "a reset": lambda scene: scene.use_next_computer(),
 }
 
 
@@ -172,7 +172,7 @@ ACTIONS_BESIDE: dict[
     "nothing": (lambda robot: None, lambda robot: None),
     "the button is down": (lambda robot: robot.step(flags=1), lambda robot: robot.step(flags=2)),
     "a wheel is held": (lambda robot: hold_motors(robot), lambda robot: robot.hold(0)),
-    "the supply is low": (lambda robot: robot.supply(True), lambda robot: restore_supply(robot)),
+    "the supply is low": (lambda it: it.set_supply(True), lambda it: restore_supply(it)),
 }
 
 
@@ -183,7 +183,7 @@ def hold_motors(robot: HostFirmware) -> None:
 
 def restore_supply(robot: HostFirmware) -> None:
     """The supply is sufficient: waiting data is saved, if that delays no motor."""
-    robot.supply(False)
+    robot.set_supply(False)
     robot.wait(1500)
 
 
@@ -219,7 +219,7 @@ def run_second(scene: Scene, tale: Story) -> tuple[list[str], list[str]]:
     """Return the second program's actions, with times from its mark, and the messages heard."""
     robot = scene.robot
     if not isinstance(robot, Esp32Robot):
-        robot.sense(*READINGS)
+        robot.set_readings(*READINGS)
     scene.session.events()
     scene.before = scene.session.run
     robot.did.clear()
@@ -259,7 +259,7 @@ def robot_after_first(tale: Story, scene: Scene) -> Scene:
     """Return the robot when the first program is over."""
     robot = scene.robot
     if not isinstance(robot, Esp32Robot):
-        robot.sense(*FIRST_READINGS)
+        robot.set_readings(*FIRST_READINGS)
     START_ACTIONS[tale.begins](scene, tale.first)
     run_and_listen(scene, tale.begins, tale.runs_ms)
     begins, is_over = ACTIONS_BESIDE[tale.beside]
@@ -278,7 +278,7 @@ def robot_after_first(tale: Story, scene: Scene) -> Scene:
         f"{tale} {motor_lines}"
     )
     if tale.is_next:
-        scene.next_computer()
+        scene.use_next_computer()
     return scene
 
 
@@ -300,29 +300,31 @@ def fitting_story(rng: random.Random, starts: str, kind: str) -> tuple[Story, li
     fresh one."""
     for _ in range(20):
         tale = story(rng, starts, kind)
-        want, wanted_words = run_second(Scene(kind), tale)
-        if want:
-            return tale, want, wanted_words
+        expected, expected_words = run_second(Scene(kind), tale)
+        if expected:
+            return tale, expected, expected_words
     raise AssertionError(f"{kind}: of 20 programs none begins by {starts}")
 
 
 def check(seed: int, starts: str, kind: str) -> str:
-    tale, want, wanted_words = fitting_story(random.Random(f"{seed} {starts} {kind}"), starts, kind)
+    tale, expected, expected_words = fitting_story(
+        random.Random(f"{seed} {starts} {kind}"), starts, kind
+    )
     scene = robot_after_first(tale, Scene(kind, random.Random(seed).choice(CLOCKS_MS)))
     goes_on = not scene.robot.is_latched  # until the second program begins
     actions, heard_lines = run_second(scene, tale)
-    heard_lines, wanted_words = (
+    heard_lines, expected_words = (
         without_first_program_events(heard_lines),
-        without_first_program_events(wanted_words),
+        without_first_program_events(expected_words),
     )
     if tale.beside == "the button is down":
         heard_lines = [line for line in heard_lines if "StoppedEvent(cause=3" not in line]
     if goes_on and heard_lines == ["// Still saving. Send it again."]:
         return "it says why not"  # the saved program drives
     if goes_on:
-        heard_lines = heard_lines[max(0, len(heard_lines) - len(wanted_words)) :]
-    explanation = f"{kind} {tale}\n{actions}\n{heard_lines}\nnot\n{want}\n{wanted_words}"
-    assert actions == want and heard_lines == wanted_words, explanation
+        heard_lines = heard_lines[max(0, len(heard_lines) - len(expected_words)) :]
+    explanation = f"{kind} {tale}\n{actions}\n{heard_lines}\nnot\n{expected}\n{expected_words}"
+    assert actions == expected and heard_lines == expected_words, explanation
     return tale.ends
 
 
@@ -358,7 +360,7 @@ def waiting_start() -> tuple[Scene, bytes]:
         robot.talk(scene.session, 100)
     scene.session.stop(robot.now_ms)
     robot.talk(scene.session, 100)
-    breaks_off(scene)  # the robot holds the saved program
+    break_off_upload(scene)  # the robot holds the saved program
     scene.open_session()
     scene.session.name(b"Pia")
     robot.talk(scene.session, 15)  # saving takes longer
@@ -392,7 +394,7 @@ def test_a_pending_button_start_is_cancelled_by_another_program() -> None:
     scene, _ = waiting_start()
     robot = scene.robot
     other_code = image_of("SI|B(60, 40)", KIT).code
-    scene.next_computer()
+    scene.use_next_computer()
     scene.open_session()
     request = scene.session.live(other_code)
     robot.talk(scene.session, 1, flags=2)
@@ -410,14 +412,14 @@ TIME_TOLERANCE_MS = 400
 
 def with_discs() -> Scene:
     scene = Scene("a mega")
-    scene.robot.discs(*EDGES)
+    scene.robot.mount_discs(*EDGES)
     return scene
 
 
-def ways(rng: random.Random, most_ways: int) -> str:
+def ways(rng: random.Random, max_way_count: int) -> str:
     """Return moves by centimetres and degrees, which do the same at any position of the discs."""
     moves = [f"{rng.choice('FB')}({rng.choice((5, 12, 30, 60))} CM, {rng.choice((40, 60, 100))})"
-             for _ in range(rng.randint(1, most_ways))]  # fmt: skip
+             for _ in range(rng.randint(1, max_way_count))]  # fmt: skip
     moves.insert(rng.randrange(len(moves) + 1), f"R({rng.choice((45, 90))} DEG, 60)")
     return MARK + ";".join(moves)
 
@@ -441,9 +443,9 @@ def drive(scene: Scene, starts: str, text: str) -> tuple[list[str], int, float, 
         rows = events[marks[-1] :] if marks else []
         assert robot.now_ms < 120_000, text
     run_and_listen(scene, starts, 700)  # until its wheels stop
-    took_ms = int(rows[-1][0]) - int(rows[0][0])
-    its_left, its_right = robot.wheel_edges()
-    return [action for _, action in rows], took_ms, its_left - left, its_right - right
+    duration_ms = int(rows[-1][0]) - int(rows[0][0])
+    left_mm, right_mm = robot.wheel_edges()
+    return [action for _, action in rows], duration_ms, left_mm - left, right_mm - right
 
 
 def is_standing(robot: HostFirmware) -> bool:
@@ -466,10 +468,14 @@ def check_ways(seed: int) -> str:
     )
     scene = robot_after_first(tale, with_discs())
     is_over, stood = scene.robot.is_latched, is_standing(scene.robot)
-    actions, took_ms, *distances_cm = drive(scene, tale.starts, tale.second)
-    want, end_ms, *distances = drive(with_discs(), tale.starts, tale.second)
-    explanation = f"{tale}\n{actions} {took_ms} {distances_cm}\nnot\n{want} {end_ms} {distances}"
-    assert actions == want and abs(took_ms - end_ms) < TIME_TOLERANCE_MS * len(want), explanation
+    actions, duration_ms, *distances_cm = drive(scene, tale.starts, tale.second)
+    expected, end_ms, *distances = drive(with_discs(), tale.starts, tale.second)
+    explanation = (
+        f"{tale}\n{actions} {duration_ms} {distances_cm}\nnot\n{expected} {end_ms} {distances}"
+    )
+    assert actions == expected and abs(duration_ms - end_ms) < TIME_TOLERANCE_MS * len(expected), (
+        explanation
+    )
     if is_over:
         tolerance = EDGE_TOLERANCE if stood else ROLLING_EDGE_TOLERANCE
         assert all(abs(a - b) < tolerance for a, b in zip(distances_cm, distances, strict=True)), (
@@ -485,22 +491,22 @@ def test_measured_moves_after_any_history_are_as_on_a_fresh_robot(part: int) -> 
     assert counts["from where it stood"] > 20 and counts["from a move"] > 0, counts
 
 
-def most_ahead(scene: Scene) -> float:
+def find_max_lead_mm(scene: Scene) -> float:
     """Return the greatest lead of one wheel over the other in a straight move."""
     robot = scene.robot
     uploads(scene, "F(60 CM, 60)")
     left, right = robot.wheel_edges()
-    most_mm = 0.0
+    max_lead_mm = 0.0
     for _ in range(60):
         robot.talk(scene.session, 20)
-        its_left, its_right = robot.wheel_edges()
-        most_mm = max(most_mm, abs(its_left - left - its_right + right))
-    return most_mm
+        left_mm, right_mm = robot.wheel_edges()
+        max_lead_mm = max(max_lead_mm, abs(left_mm - left - right_mm + right))
+    return max_lead_mm
 
 
 @pytest.mark.parametrize("wheels", [1, 2])
 def test_the_next_program_does_not_make_up_for_a_held_wheel(wheels: int) -> None:
-    assert most_ahead(with_discs()) < 0.01
+    assert find_max_lead_mm(with_discs()) < 0.01
     scene = with_discs()
     uploads(scene, "F(60 CM, 60)")
     scene.robot.talk(scene.session, 300)
@@ -509,8 +515,8 @@ def test_the_next_program_does_not_make_up_for_a_held_wheel(wheels: int) -> None
     scene.robot.hold(0)
     END_ACTIONS["zeros"](scene)
     scene.robot.wait(2000)
-    scene.next_computer()
-    assert most_ahead(scene) < 0.15
+    scene.use_next_computer()
+    assert find_max_lead_mm(scene) < 0.15
 
 
 def ends_of_move(scene: Scene, wheels: int, from_edges: float) -> tuple[float, ...]:

@@ -42,8 +42,8 @@ class Found(NamedTuple):
 
     cases: int
     saves: int
-    most_erases: int  # most erases of one byte in one save
-    most_writes: int  # most writes of one save
+    max_erases: int  # most erases of one byte in one save
+    max_writes: int  # most writes of one save
 
 
 CHECKSUM = ("crc32.cpp", "crc32.h", "image.h", "bytecode.h")
@@ -81,8 +81,8 @@ def test_no_byte_is_erased_twice_by_a_save() -> None:
     """Each of the image once, the generation and three marks; that these go away takes no erase."""
     wear = run(compile_program(parts(SOURCES), FLAGS), 2, (str(CODE_BYTES), "400"))
     assert wear.saves == 16
-    assert wear.most_erases == 1
-    assert wear.most_writes == CODE_BYTES + HEADER_BYTES + 1 + 3 + 3
+    assert wear.max_erases == 1
+    assert wear.max_writes == CODE_BYTES + HEADER_BYTES + 1 + 3 + 3
 
 
 @pytest.mark.sampled(of="layouts of the store", keep=2)
@@ -125,8 +125,8 @@ def expected_lines(image: bytes) -> list[str]:
 @pytest.mark.parametrize(("size", "ticks"), [(3, 0), (24, 20), (CODE_BYTES, 700)])
 def test_the_store_works_on_a_chip(size: int, ticks: int) -> None:
     """The registers of a simulated ATmega328P: saved, left in the middle of a save, saved."""
-    dice = random.Random(size)
-    first, second = (pack("SI", 0, dice.randbytes(size)) for _ in range(2))
+    rng = random.Random(size)
+    first, second = (pack("SI", 0, rng.randbytes(size)) for _ in range(2))
     request = struct_pack("<H", ticks)
     for image in (first, second):
         request += struct_pack("<H", len(image)) + image
@@ -149,8 +149,8 @@ if __name__ == "__main__":
     options = make_options(10_000_000, 1)
     cases = 0
     for number in count(options.seed):
-        for which in CAMPAIGN:
-            cases += run(compile_program(parts(SOURCES), FLAGS), number, which).cases
+        for campaign_case in CAMPAIGN:
+            cases += run(compile_program(parts(SOURCES), FLAGS), number, campaign_case).cases
         print(f"{cases:,} cases to seed {number}: nothing wrong", flush=True)
         if cases >= options.count:
             break

@@ -25,7 +25,7 @@ END_ACTIONS: dict[str, tuple[Callable[[Esp32Robot, Session], object], int]] = {
     "a lost link": (lambda robot, session: robot.wait(1100), 64),
     "max_run": (lambda robot, session: robot.talk(session, 1000), 65),
     "a stall": (lambda robot, session: robot.hang(150), 66),
-    "a fault": (lambda robot, session: robot.analog(LIGHT_L, 4095), 2),
+    "a fault": (lambda robot, session: robot.set_analog(LIGHT_L, 4095), 2),
 }
 
 
@@ -69,7 +69,7 @@ def test_all_ways_to_end_a_run_end_all_tasks(state: str, end: str) -> None:
     values = robot.complete(session, session.status())
     assert (values.state, values.fault) == (STATE_FAULTED if fault else STATE_STOPPED, fault)
 
-    robot.analog(LIGHT_L, 0)
+    robot.set_analog(LIGHT_L, 0)
     robot.did.clear()
     send("the main task moves")
     assert actions_of(robot) == ["MOTORS 80 80"] and not robot.is_latched

@@ -214,13 +214,15 @@ def test_backspace_edits_what_is_typed() -> None:
     assert type_text(robot, "F(0.2,50)\b\n", 400) == ["// 10: Unknown sign"]
 
 
-@pytest.mark.parametrize("begun_text", ["\x1b", "\x1b[", "\x1bO", "\x1b[1", "\x1b[1;", "\x1b[1;5"])
+@pytest.mark.parametrize(
+    "partial_text", ["\x1b", "\x1b[", "\x1bO", "\x1b[1", "\x1b[1;", "\x1b[1;5"]
+)
 @pytest.mark.parametrize("stop", ["S", "STOP", "s;", "ALTO"])
-def test_after_a_second_a_partial_key_is_forgotten(begun_text: str, stop: str) -> None:
+def test_after_a_second_a_partial_key_is_forgotten(partial_text: str, stop: str) -> None:
     """A terminal has sent a part of a cursor key; a stop typed then is obeyed."""
     robot = switched_on()
     assert type_text(robot, "F(60, 80)\n", 100) == ["// OK"]
-    type_text(robot, begun_text, 1100)
+    type_text(robot, partial_text, 1100)
     type_text(robot, f"{stop}\n", 300)
     assert actions_of(robot)[-1] == "MOTORS 0 0"
 
@@ -464,9 +466,11 @@ def test_frames_work_during_and_after_text() -> None:
     assert actions_of(robot) == LINE
 
 
-@pytest.mark.parametrize("burst", [True, False])
-@pytest.mark.parametrize("less", range(1, 12))
-def test_a_live_line_right_after_text_runs_its_own_frame(less: int, burst: bool) -> None:
+@pytest.mark.parametrize("is_burst", [True, False])
+@pytest.mark.parametrize("missing_count", range(1, 12))
+def test_a_live_line_right_after_text_runs_its_own_frame(
+    missing_count: int, is_burst: bool
+) -> None:
     """Its image is made before its frame ends: text that comes between must not be run for it."""
     robot, session = switched_on(), computer()
     robot.until(session, session.hello())
@@ -474,8 +478,10 @@ def test_a_live_line_right_after_text_runs_its_own_frame(less: int, burst: bool)
     request = session.live(image.code)
     frame = session.poll(robot.now_ms)
     text = b"SI|M(50,50);W(5)\n\0"
-    robot.step(text + frame[:-less], flags=16 if burst else 0, ticks=0 if burst else 1)
-    sent_bytes = robot.step(b"", ticks=4) + robot.step(frame[-less:]) + robot.wait(20)
+    robot.step(
+        text + frame[:-missing_count], flags=16 if is_burst else 0, ticks=0 if is_burst else 1
+    )
+    sent_bytes = robot.step(b"", ticks=4) + robot.step(frame[-missing_count:]) + robot.wait(20)
     session.receive(sent_bytes, robot.now_ms)
     robot.talk(session, 300)
     assert robot.until(session, request) == OK
@@ -630,10 +636,10 @@ def test_the_obstacle_program_runs_line_by_line(end: str) -> None:
     robot = switched_on()
     lines = ["SI|LOOP(FOREVER);", "  F(1, 80);", "  DISTANCE;", "  IF(DISTANCE < 10);",
              "    STOP;", "    R(1, 60);", "  ENDIF;", "END_LOOP"]  # fmt: skip
-    robot.sense(0, 0, 50_000)
+    robot.set_readings(0, 0, 50_000)
     assert type_text(robot, end.join(lines) + end) == ["// OK"]
     robot.wait(2500)
-    robot.sense(0, 0, 9_000)
+    robot.set_readings(0, 0, 9_000)
     robot.wait(1000)
     assert actions_of(robot)[-1] == "MOTORS 60 -60"
     assert type_text(robot, OBSTACLE.rstrip("\n").replace("\n", end) + end)[-1] == "// OK"
@@ -655,7 +661,7 @@ STEP_MS = 37
 def robot_on_slow_line() -> HostFirmware:
     robot = HostFirmware(KIT)
     robot.wait(200)
-    robot.pace(PACE)
+    robot.set_byte_ticks(PACE)
     return robot
 
 
@@ -674,18 +680,18 @@ def test_a_truncated_answer_is_repeated_from_its_beginning(line: str, cut: str) 
     """The cut may come at any moment of the answer: the rest is not sent, and the next answer is
     that of a fresh robot.
     """
-    wanted_answer = answer_to(robot_on_slow_line(), line)
-    assert wanted_answer.startswith(b"//")
+    expected_answer = answer_to(robot_on_slow_line(), line)
+    assert expected_answer.startswith(b"//")
     robot = robot_on_slow_line()
-    lasts_ms = 1 + len(wanted_answer) * PACE // TICKS
-    for begun_ms in range(1, lasts_ms + STEP_MS, STEP_MS):
-        robot.wait(begun_ms, f"{line}\n".encode())
+    lasts_ms = 1 + len(expected_answer) * PACE // TICKS
+    for began_ms in range(1, lasts_ms + STEP_MS, STEP_MS):
+        robot.wait(began_ms, f"{line}\n".encode())
         # lines after the interrupted one
         rest = robot.wait(8000, INTERRUPTIONS[cut]).split(b"\n")[1:]
         if cut != "another question":  # another question waits for the previous answer
-            assert not {*rest} & {*wanted_answer.split(b"\n")[:-1]}, (begun_ms, rest)
+            assert not {*rest} & {*expected_answer.split(b"\n")[:-1]}, (began_ms, rest)
         robot.wait(2500, b"\n")
-        assert answer_to(robot, line) == wanted_answer, begun_ms
+        assert answer_to(robot, line) == expected_answer, began_ms
 
 
 def test_text_is_accepted_right_after_power_on() -> None:
@@ -714,9 +720,9 @@ def test_a_program_too_long_for_the_buffer_is_not_run_in_part(seed: int) -> None
         rows = ["// before it"] * rng.randrange(6) + ["LOOP(2)"]
         rows += [f"F(0.01,{rng.randrange(20, 90)})" for _ in range(rng.randrange(1, 6))]
         text = "\n".join([*rows, "END_LOOP", ""]).encode()
-        at_once = rng.randrange(len(text))
-        answer = robot.step(text[:at_once], flags=16)
-        answer += "\n".join(type_text(robot, text[at_once:], 300)).encode()
+        cut_index = rng.randrange(len(text))
+        answer = robot.step(text[:cut_index], flags=16)
+        answer += "\n".join(type_text(robot, text[cut_index:], 300)).encode()
         is_lost = b"// Bytes were lost. Begin again." in answer
         lost_count += is_lost
         assert not is_lost or not robot.did, text

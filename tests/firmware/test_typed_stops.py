@@ -242,16 +242,16 @@ STEP_MS = 300
 PAUSE_LINE = "// Stopped: wait a second\r\n"
 
 
-def repeat_until_it_drives(uno: Uno, most_ms: int) -> int:
+def repeat_until_it_drives(uno: Uno, limit_ms: int) -> int:
     """Send a line every EACH_MS; return after how many ms the robot drives, or most_ms."""
     passed_ms = 0
-    while passed_ms < most_ms:
+    while passed_ms < limit_ms:
         uno.send(NEXT_PROGRAM)
         uno.run_ms(STEP_MS)
         passed_ms += STEP_MS
         if states(uno) == FORWARD:
             return passed_ms
-    return most_ms
+    return limit_ms
 
 
 @pytest.mark.parametrize("stop", [b"S\n", b"PARA\n", b"SSS"])
@@ -350,7 +350,7 @@ def check_latched(uno: Uno) -> None:
 def test_a_line_in_a_block_belongs_to_the_program(uno_at: tuple[Uno, int]) -> None:
     """The paper's listing, typed line by line while another program runs: no stop latches."""
     uno, _ = uno_at
-    uno.sonar("trigger", "echo", 40)
+    uno.set_sonar_distance("trigger", "echo", 40)
     drive(uno)
     for line in OBSTACLE_LINES[:-1]:
         uno.send(line.encode() + b"\r\n")
@@ -389,35 +389,33 @@ def test_code_that_holds_a_typed_stop_runs(uno_at: tuple[Uno, int], way: str) ->
     )
     assert wired_uno.until(request) == OK
     assert b"\nS\n" in bytes(byte.value for byte in uno.received_bytes)
-    begun_ms = wired_uno.now_ms
+    began_ms = wired_uno.now_ms
     wired_uno.run(SILENCE_MS + SHORTEST_STOP_MS)
     assert states(uno) == FORWARD
     while states(uno) == FORWARD:
         wired_uno.run(10)
-    assert 2900 < wired_uno.now_ms - begun_ms < 3200
+    assert 2900 < wired_uno.now_ms - began_ms < 3200
     wired_uno.run(50)
     assert wired_uno.session.events()[-1].name == "DONE"
 
 
-def random_prefix(draw: random.Random) -> bytes:
-    parts = [draw.choice(list(ALL_PREFIXES.values())) for _ in range(draw.randrange(3))]
-    odd_bytes = bytes(
-        draw.choice(b"\0\x01S\n s;T\r\x1b[OPp\t5(") for _ in range(draw.randrange(20))
-    )
-    parts += [odd_bytes, draw.randbytes(draw.randrange(30))]
-    draw.shuffle(parts)
-    end = draw.choice((b"\n", b"\r\n", b"\0"))  # a line begins, in frames too
+def random_prefix(rng: random.Random) -> bytes:
+    parts = [rng.choice(list(ALL_PREFIXES.values())) for _ in range(rng.randrange(3))]
+    odd_bytes = bytes(rng.choice(b"\0\x01S\n s;T\r\x1b[OPp\t5(") for _ in range(rng.randrange(20)))
+    parts += [odd_bytes, rng.randbytes(rng.randrange(30))]
+    rng.shuffle(parts)
+    end = rng.choice((b"\n", b"\r\n", b"\0"))  # a line begins, in frames too
     return b"".join(parts).replace(b"\0\0\0", b"\0") + end
 
 
-def stop_after_random_bytes(sketch: Path, baud: int, draw: random.Random, count: int) -> float:
+def stop_after_random_bytes(sketch: Path, baud: int, rng: random.Random, count: int) -> float:
     """Type so many stops after random bytes; return the ms that the slowest took."""
     slowest_ms = 0.0
     with started_uno(sketch, baud) as uno:
         for k in range(count):
             if k % STOPS_PER_STATE == 0:
                 drive(uno)
-            prefix, spelling = random_prefix(draw), draw.choice(STRICT_SPELLINGS)
+            prefix, spelling = random_prefix(rng), rng.choice(STRICT_SPELLINGS)
             is_last = k % STOPS_PER_STATE == STOPS_PER_STATE - 1
             with nullcontext() if is_last else uno.try_out():
                 late_ms = stop_after(uno, baud, prefix, spelling, is_busy=True)

@@ -87,32 +87,32 @@ UNRUNNABLE_IMAGES = {
 @pytest.mark.parametrize("image", UNRUNNABLE_IMAGES.values(), ids=UNRUNNABLE_IMAGES)
 @pytest.mark.parametrize("is_first", [True, False])
 def test_undo_does_not_restore_an_unrunnable_program(image: bytes, is_first: bool) -> None:
-    good = bytes_of(PROGRAM_A)
+    good_image = bytes_of(PROGRAM_A)
     places = (FIRST_SLOT, SECOND_SLOT) if is_first else (SECOND_SLOT, FIRST_SLOT)
-    robot = HostFirmware(KIT, eeprom_with((places[0], 7, good), (places[1], 6, image)))
+    robot = HostFirmware(KIT, eeprom_with((places[0], 7, good_image), (places[1], 6, image)))
     session = computer()
     robot.wait(400)
     for _ in range(2):
         assert undo(robot, session) == NO_PREVIOUS
         assert read_saved_state(robot, session) == "STORED"
-        assert fetch_image(robot, session) == good
+        assert fetch_image(robot, session) == good_image
     robot.push()
     robot.talk(session, 400)
     assert "MOTORS 50 50" in actions_of(robot)
-    assert program_after_power_off(robot) == good
+    assert program_after_power_off(robot) == good_image
     # The next program is stored next to the one that can run.
     send(robot, session, PROGRAM_C)
     wait_until_saved(robot, session)
     assert undo(robot, session) == OK
-    assert fetch_image(robot, session) == good
+    assert fetch_image(robot, session) == good_image
 
 
 @pytest.mark.parametrize("image", [OTHER_KIT_IMAGE, INVALID_IMAGE], ids=["kit", "verifier"])
 @pytest.mark.parametrize("has_good", [True, False])
 def test_a_robot_starts_with_the_newest_runnable_program(image: bytes, has_good: bool) -> None:
     """Its checksum is right, so that only the verifier or the kit says no."""
-    good = bytes_of(PROGRAM_A)
-    good_slots = [(SECOND_SLOT, 6, good)] if has_good else []
+    good_image = bytes_of(PROGRAM_A)
+    good_slots = [(SECOND_SLOT, 6, good_image)] if has_good else []
     robot, session = HostFirmware(KIT, eeprom_with(*good_slots, (FIRST_SLOT, 7, image))), computer()
     robot.wait(400)
     assert read_saved_state(robot, session) == ("STORED" if has_good else "NOTHING")
@@ -176,7 +176,7 @@ def test_a_save_delayed_by_a_low_supply_follows_the_last_request(
 ) -> None:
     """A program that another one has followed since is not saved, nor is one in its place."""
     robot, session = robot_with_two_programs()
-    robot.supply(is_low=True)
+    robot.set_supply(is_low=True)
     waits, is_tried, name = "", False, ""
     for count, step in enumerate(steps):
         text = f"SI|SHOW({count}); " + "W(0); " * 20
@@ -191,7 +191,7 @@ def test_a_save_delayed_by_a_low_supply_follows_the_last_request(
             robot.talk(session, 800)  # makes it wait for the supply
         if step != NAME_CHANGE:
             waits, is_tried = text if step == SAVED_PROGRAM else "", step == TRIED_PROGRAM
-    robot.supply(is_low=False)
+    robot.set_supply(is_low=False)
     robot.talk(session, 5000)
     assert read_saved_state(robot, session) == ("MEMORY" if is_tried else "STORED")
     assert program_after_power_off(robot) == bytes_of(waits or PROGRAM_B)
@@ -205,7 +205,7 @@ def test_a_save_delayed_by_a_low_supply_follows_the_last_request(
 @pytest.mark.parametrize("count", [1, 2, 3])
 def test_with_a_low_supply_undo_changes_nothing(count: int) -> None:
     robot, session = robot_with_two_programs()
-    robot.supply(is_low=True)
+    robot.set_supply(is_low=True)
     memory = robot.memory()
     for text in (PROGRAM_A, PROGRAM_B, PROGRAM_A)[:count]:
         assert undo(robot, session) == OK
@@ -214,7 +214,7 @@ def test_with_a_low_supply_undo_changes_nothing(count: int) -> None:
         assert robot.memory() == memory
         assert program_after_power_off(robot) == bytes_of(PROGRAM_B)
     assert read_saved_state(robot, session) == ("STORED" if text == PROGRAM_B else "LOW_SUPPLY")
-    robot.supply(is_low=False)
+    robot.set_supply(is_low=False)
     robot.talk(session, 1500)
     assert read_saved_state(robot, session) == "STORED"
     for current_text in (text, PROGRAM_B if text == PROGRAM_A else PROGRAM_A):
@@ -275,14 +275,14 @@ def test_a_duplicate_request_is_executed_once() -> None:
 
 def test_programs_undos_and_power_offs_work_in_any_order() -> None:
     """The model has two variables: the current program and the previous one."""
-    draw = random.Random(11)
+    rng = random.Random(11)
     texts = [f"SB|F(0.1, {power})" for power in range(40, 46)] + [PROGRAM_B]
     robot, session = switched_on(), computer()
     current_text, text_before = "", ""
     for step in range(120):
-        action = draw.choice(("send", "undo", "undo", "off"))
+        action = rng.choice(("send", "undo", "undo", "off"))
         if action == "send":
-            text = draw.choice(texts)
+            text = rng.choice(texts)
             send(robot, session, text)
             wait_until_saved(robot, session)
             if text != current_text:

@@ -45,7 +45,7 @@ def test_a_byte_without_its_stop_bit_damages_a_message(uno: Uno) -> None:
     frame = wired_uno.session.poll(wired_uno.now_ms)
     assert len(frame) > 4
     uno.send(frame[:3])
-    uno.send(frame[3:4], stop_bits_fail=True)
+    uno.send(frame[3:4], has_bad_stop_bits=True)
     uno.send(frame[4:])
     wired_uno.run(30)
     assert wired_uno.until(ping) == OK  # sent again
@@ -123,19 +123,19 @@ def test_a_short_disturbance_stops_no_robot(uno: Uno) -> None:
     assert states(uno) == FORWARD
     uno.send(b"\x55")  # earlier bytes no longer matter
     for _ in range(3):
-        uno.send(b"\0", stop_bits_fail=True)
+        uno.send(b"\0", has_bad_stop_bits=True)
     uno.run_ms(50)
     assert states(uno) == FORWARD
     uno.send(b"\x55")
     for _ in range(4):
-        uno.send(b"\0", stop_bits_fail=True)
+        uno.send(b"\0", has_bad_stop_bits=True)
     uno.run_ms(50)
     assert states(uno) == OFF
 
 
 def test_bytes_after_a_framing_error_do_not_count_as_a_held_line(uno: Uno) -> None:
     driving_uno(uno)
-    uno.send(b"\x10", stop_bits_fail=True)
+    uno.send(b"\x10", has_bad_stop_bits=True)
     uno.send(b"\x01\x02\x04\x08" * 200)
     uno.run_ms(1000)
     assert states(uno) == FORWARD

@@ -45,10 +45,10 @@ LATE_CYCLES = 2640  # 165 us: the work for a millisecond has just begun
 
 def test_a_program_drives(uno: Uno) -> None:
     wired_uno = computer(uno)
-    begun_ms = wired_uno.now_ms
+    began_ms = wired_uno.now_ms
     send(wired_uno, "SI|F(1, 80)")
     assert states(uno) == FORWARD
-    assert wired_uno.now_ms - begun_ms < 500
+    assert wired_uno.now_ms - began_ms < 500
     assert uno.pins["left"].duty == pytest.approx(0.8, abs=0.02)
     wired_uno.run(1100)
     assert states(uno) == OFF
@@ -241,10 +241,10 @@ def test_a_tag_takes_milliseconds_and_a_claim_survives_a_reset(uno: Uno) -> None
     wired_uno.run(300)
     uno.press("button", 2100)
     assert wired_uno.until(request) == OK
-    begun_ms = wired_uno.now_ms
+    began_ms = wired_uno.now_ms
     assert read_ownership(keys, 2) == OWNED_BY_YOU
     # HELLO and its answer, a challenge, a tag: about 150 bytes on the line
-    assert wired_uno.now_ms - begun_ms <= 150 * 10 * 1000 / BAUD + 2 * HASH_MS + 8
+    assert wired_uno.now_ms - began_ms <= 150 * 10 * 1000 / BAUD + 2 * HASH_MS + 8
     uno.reset("external")
     uno.run_ms(300)
     assert read_ownership(keys, 3) == OWNED_BY_YOU

@@ -36,7 +36,7 @@ def wait_until_saved(wired_uno: Wired, limit_ms: int = 4000) -> int:
 )
 def test_saving_works_from_four_volts_on(robot: Uno, volts: float, millivolts: int) -> None:
     wired_uno = computer(robot)
-    robot.supply(volts)
+    robot.set_supply(volts)
     send(wired_uno, SAVES)
     assert wait_until_saved(wired_uno) == millivolts
 
@@ -59,11 +59,11 @@ def test_a_supply_drop_between_two_checks_is_noticed(uno: Uno) -> None:
     send(wired_uno, SAVES)
     while len(marks(uno, start_cycle)) < 1:
         wired_uno.run(1)
-    uno.supply(3.5)
+    uno.set_supply(3.5)
     assert wait_until_saved(wired_uno) == LOW
     wired_uno.run(1500)
     assert len(marks(uno, start_cycle)) == 1
-    uno.supply(4.5)
+    uno.set_supply(4.5)
     wired_uno.run(1500)
     assert read_saved_state(wired_uno) == STORED
     assert len(marks(uno, start_cycle)) == 3
@@ -75,10 +75,10 @@ LIGHT = "SI|LOOP(FOREVER);SHOW(LIGHT_L);SHOW(LIGHT_R);END_LOOP"
 @pytest.mark.parametrize("volts", [5.0, 3.5])
 def test_sensors_and_the_supply_take_turns(uno: Uno, volts: float) -> None:
     """A program that reads two analog sensors all the time reads them right, and is saved."""
-    uno.analog("A0", 200)
-    uno.analog("A1", 800)
+    uno.set_analog("A0", 200)
+    uno.set_analog("A1", 800)
     wired_uno = computer(uno)
-    uno.supply(volts)
+    uno.set_supply(volts)
     send(wired_uno, LIGHT)
     shown_values: list[int] = []
     for _ in range(150):
@@ -94,7 +94,7 @@ def test_sensors_and_the_supply_take_turns(uno: Uno, volts: float) -> None:
 def test_a_measurement_that_a_motor_ends_leaves_the_converter_to_the_sensors(uno: Uno) -> None:
     """The pauses are shorter than a measurement, so each measurement is abandoned, and the program
     is not saved."""
-    uno.analog("A1", 800)
+    uno.set_analog("A1", 800)
     wired_uno = computer(uno)
     start_cycle = uno.cycle
     pushes = "W(0.001); M(50, 50); SHOW(LIGHT_L); W(0.02); M(0, 0);"
@@ -133,9 +133,9 @@ def test_readings_are_right_while_names_are_kept_and_the_line_is_bad(
     """Saving keeps a program from running, the line interrupts it: readings come late at most."""
     with Uno(sketches(board), names=NAMES, board=board, baud=9600) as uno:
         uno.run_ms(300)
-        uno.analog("A0", 200)
-        uno.analog("A1", 800)
-        uno.sonar("trigger", "echo", distance_cm)
+        uno.set_analog("A0", 200)
+        uno.set_analog("A1", 800)
+        uno.set_sonar_distance("trigger", "echo", distance_cm)
         wired_uno = computer(uno)
         send(wired_uno, LOOKS, is_detached=True)
         start_cycle, shown_values = uno.cycle, []
@@ -143,7 +143,7 @@ def test_readings_are_right_while_names_are_kept_and_the_line_is_bad(
             assert wired_uno.until(wired_uno.session.name(b"TINI%d" % turn)) == OK
             wired_uno.session.name(b"TINIBOT")
             wired_uno.run(30)
-            uno.send(b"\x55", stop_bits_fail=True)
+            uno.send(b"\x55", has_bad_stop_bits=True)
             wired_uno.run(20)
             shown_values += [event.value for event in wired_uno.session.events()
                              if event.name == "SHOW"]  # fmt: skip

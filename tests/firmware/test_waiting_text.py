@@ -133,7 +133,7 @@ class Trials:
         begin_frame = self.frame("BEGIN", bytes([mode]) + image[2:CHECKSUM_OFFSET])
         return [begin_frame, *pieces, self.frame("COMMIT", image[CHECKSUM_OFFSET:BODY_OFFSET])]
 
-    def trial(self) -> None:
+    def run_trial(self) -> None:
         rng = self.rng
         self.begin()
         self.put(self.frame("CLEAR"), 5)
@@ -147,10 +147,10 @@ class Trials:
             later_text, more_text = self.text()
             may_run.update(codes + more_text)
             data = bytes_before + frame
-            most_bytes = rng.choice((3, min(12, len(frame))))  # a LIVE is made before its last ones
+            max_bytes = rng.choice((3, min(12, len(frame))))  # a LIVE is made before its last ones
             if is_quiet:
                 self.put(b"", 1100)  # from here on the robot reads text again
-            cut = len(data) - rng.choice((rng.randrange(1, most_bytes), rng.randrange(len(frame))))
+            cut = len(data) - rng.choice((rng.randrange(1, max_bytes), rng.randrange(len(frame))))
             self.put(data[:cut], rng.choice((0, 0, 1, 20 * is_quiet)))
             self.put(data[cut:] + rng.choice((b"", later_text)), rng.choice((1, 4, 20)))
             if rng.random() < REPEAT_PROBABILITY:
@@ -167,7 +167,7 @@ class Trials:
 def test_the_verified_code_is_what_runs() -> None:
     trials = Trials(7)
     for _ in range(TRIALS):
-        trials.trial()
+        trials.run_trial()
     assert trials.ran > TRIALS // 3
 
 
@@ -187,7 +187,7 @@ def test_a_typed_letter_does_not_turn_a_number_into_a_move(text: bytes) -> None:
 
 if __name__ == "__main__":
     options = make_options(1000, 1_000_000)
-    many = Trials(options.seed)
+    all_trials = Trials(options.seed)
     for _ in range(options.count):
-        many.trial()
-    print(f"{options.count} trials: {many.ran} programs have run, each as it was verified")
+        all_trials.run_trial()
+    print(f"{options.count} trials: {all_trials.ran} programs have run, each as it was verified")

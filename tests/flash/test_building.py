@@ -185,8 +185,8 @@ def test_breakpoints_change_the_firmware_only_if_they_replace_a_feature(
                 continue
             with pytest.raises(CommandError) as exception_info:
                 firmware_build.require_breakpoints(robot)
-            there_anyway = board not in building.ENVIRONMENT_WITH_BREAKPOINTS
-            key = "flash_has_breakpoints" if there_anyway else "flash_no_breakpoints"
+            has_breakpoints_anyway = board not in building.ENVIRONMENT_WITH_BREAKPOINTS
+            key = "flash_has_breakpoints" if has_breakpoints_anyway else "flash_no_breakpoints"
             assert exception_info.value.key == key
 
 
@@ -250,13 +250,13 @@ def test_a_package_without_sources_uses_the_file_in_the_robots_language(
     files = [ready.ReadyFile(title, "nano", "1", Path(title)) for title in titles]
     monkeypatch.setattr(building, "sources", lambda: None)
     monkeypatch.setattr(ready, "files", lambda: files)
-    for language, wanted_text in (("es", spanish), ("en", english)):
+    for language, expected_text in (("es", spanish), ("en", english)):
         robot = robots.load("liner", "nano").with_language(language)
-        if wanted_text is None:
+        if expected_text is None:
             with pytest.raises(CommandError):
                 firmware_build.firmware(robot, Namespace(yes=True), "en")
         else:
-            assert firmware_build.firmware(robot, Namespace(yes=True), "en").title == wanted_text
+            assert firmware_build.firmware(robot, Namespace(yes=True), "en").title == expected_text
         with pytest.raises(CommandError):  # a firmware without breakpoints is none with them
             firmware_build.firmware(robot, Namespace(yes=True), "en", has_breakpoints=True)
         own_robot = robot._replace(name="own")
@@ -505,11 +505,11 @@ def test_a_firmware_is_built_once_for_each_robot_and_its_sources(
 
         def build(
             sources_: Sources, robot_: Robot, on_progress: Callable[[StepProgress], None],
-            breakpoints: bool, calls: list[bool] = calls, sources: Sources = sources,
+            has_breakpoints: bool, calls: list[bool] = calls, sources: Sources = sources,
             failure: Exception | None = failure, hex_text: str = hex_text,
         ) -> bytes:  # fmt: skip
             assert sources_ is sources
-            calls.append(breakpoints)
+            calls.append(has_breakpoints)
             on_progress(StepProgress(FETCHING, 5, "a package"))
             on_progress(StepProgress(FETCHING, 50, "a package"))
             on_progress(StepProgress(COMPILING, 50))

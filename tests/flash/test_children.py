@@ -139,9 +139,11 @@ def test_the_reason_is_the_first_error_or_the_last_line(seed: int) -> None:
     others = ("Compiling a", "  Linking  ", "terror", "==== ----", "", "\t")
     kinds = rng.choice((others, (*others, *like_errors), (*others, *like_errors, *errors)))
     rows = [rng.choice(kinds) for _ in range(6)]
-    said = [row.strip() for row in rows if row.strip(" \t=-")]
-    found = [row for row in said if row in errors] or [row for row in said if row in like_errors]
-    expected = (found or said[-1:] or [""])[0]
+    written_rows = [row.strip() for row in rows if row.strip(" \t=-")]
+    error_rows = [row for row in written_rows if row in errors] or [
+        row for row in written_rows if row in like_errors
+    ]
+    expected = (error_rows or written_rows[-1:] or [""])[0]
     assert children.reason("\n".join(rows)) == expected.rstrip(": ")
     assert (
         children.reason(f"{'x' * 500} error: at its end")

@@ -399,15 +399,17 @@ def test_an_unfinished_write_is_never_a_success_or_an_unchanged_board(seed: int)
 @pytest.mark.parametrize("chip", BOARDS)
 def test_avrdude_gets_all_of_a_bootloader(chip: str, tmp_path: Path) -> None:
     """It erases no flash: a bootloader does that, page by page, or not at all."""
-    script, told_path = tmp_path / "avrdude.py", tmp_path / "told"
-    script.write_text(f"import sys\nopen({str(told_path)!r}, 'w').write(' '.join(sys.argv[1:]))")
+    script, arguments_path = tmp_path / "avrdude.py", tmp_path / "told"
+    script.write_text(
+        f"import sys\nopen({str(arguments_path)!r}, 'w').write(' '.join(sys.argv[1:]))"
+    )
     for loader in BOARDS[chip][1]:
         result = avrdude.write(
             [sys.executable, str(script)], loader, "/dev/x", tmp_path / "f.hex", lambda _: None
         )
         words = f"-c {loader.programmer} -p {loader.part} -P /dev/x -b {loader.baud} -D"
         assert result == avrdude.WriteResult(avrdude.DONE)
-        assert told_path.read_text() == f"{words} -U flash:w:{tmp_path / 'f.hex'}:i"
+        assert arguments_path.read_text() == f"{words} -U flash:w:{tmp_path / 'f.hex'}:i"
 
 
 def test_every_outcome_has_its_message() -> None:

@@ -145,11 +145,11 @@ def link_seeds() -> Iterator[bytes]:
 
 
 def store_seeds() -> Iterator[bytes]:
-    draw = random.Random(1)
+    rng = random.Random(1)
     for count in range(40):
-        yield draw.randbytes(2) + b"\xff\0" + draw.randbytes(4 * (count % 12 + 1))
+        yield rng.randbytes(2) + b"\xff\0" + rng.randbytes(4 * (count % 12 + 1))
     for path in sorted((ROOT / "examples").glob("*.ts"))[:4]:
-        yield draw.randbytes(3) + bytes([1]) + bytes([128, 0, 200]) + path.read_bytes()[:200]
+        yield rng.randbytes(3) + bytes([1]) + bytes([128, 0, 200]) + path.read_bytes()[:200]
 
 
 def mqtt_seeds() -> Iterator[bytes]:

@@ -196,23 +196,23 @@ KINDS: dict[str, tuple[Callable[..., None], SearchStrategy[Any]]] = {
 }
 
 
-def make(kind: str, count: int, number: int) -> None:
+def check_items(kind: str, count: int, number: int) -> None:
     """Check this many items of a kind, the same ones for the same number."""
     check, strategy = KINDS[kind]
 
-    def one(value: Any) -> None:
+    def check_value(value: Any) -> None:
         check(value)
 
     checked = settings(
         max_examples=count, deadline=None, database=None,
         suppress_health_check=list(HealthCheck),
-    )(given(strategy)(one))  # fmt: skip
+    )(given(strategy)(check_value))  # fmt: skip
     seed(number)(checked)()
 
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_any_input_is_accepted_or_refused(kind: str) -> None:
-    make(kind, EXAMPLES, 1)
+    check_items(kind, EXAMPLES, 1)
 
 
 def main() -> None:
@@ -221,7 +221,7 @@ def main() -> None:
     parser.add_argument("count", type=int)
     parser.add_argument("--seed", type=int, default=1)
     options = parser.parse_args()
-    make(options.kind, options.count, options.seed)
+    check_items(options.kind, options.count, options.seed)
     print(f"{options.count} runs of {options.kind}, nothing wrong; seed {options.seed}")
 
 

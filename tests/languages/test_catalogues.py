@@ -50,9 +50,9 @@ def test_a_catalogue_has_the_gaps_and_the_keys_of_the_english_one(language: str,
         key for key, entry in catalogue.entries.items() if entry.seen_hash == UNKNOWN_HASH
     ] == [], f"python -m tools.languages --seen {language}"
     if read_language(FOLDER / language / ABOUT_FILE).is_complete:
-        wanted_keys = {key for key, entry in SOURCES[name].entries.items() if not entry.is_same}
+        expected_keys = {key for key, entry in SOURCES[name].entries.items() if not entry.is_same}
         translated = {key for key, entry in catalogue.entries.items() if entry.is_translated}
-        assert wanted_keys <= translated
+        assert expected_keys <= translated
 
 
 @pytest.mark.parametrize("language", languages.languages()[1:])

@@ -93,7 +93,7 @@ def test_rows_contain_no_word_of_a_language() -> None:
 def test_each_language_has_words_for_amounts_and_things(language: str) -> None:
     """A word's meaning in one language, `poco`, is also in the others, `pouco`."""
     kinds = {meaning.split()[0] for meaning, words in _rows(language) if words}
-    wanted_text = (
+    expected_text = (
         "amount note device stem short power value bye help each every jump colour number unit"
     )
-    assert kinds >= {*wanted_text.split()}
+    assert kinds >= {*expected_text.split()}

@@ -91,7 +91,11 @@ def open_translation(
 
 
 def problems(translation: Translation) -> list[tuple[str, int, str]]:
-    return [(path.name, *problem) for path, some in translation.problems() for problem in some]
+    return [
+        (path.name, *problem)
+        for path, file_problems in translation.problems()
+        for problem in file_problems
+    ]
 
 
 # -- mistakes

@@ -58,10 +58,10 @@ PLACES_OF_BLOCKS = {
 def test_a_lesson_calls_blocks_by_name_and_not_by_place(number: int, language: str) -> None:
     for step in page_lessons.steps(number, language, BLOCKS):
         parts = [block for block in step["blocks"] if block["kind"] != "program"]
-        for said in [*(row[0] for block in parts for row in block["rows"] if row), step["hint"]]:
-            places = re.search(PLACES_OF_BLOCKS[language], said, re.IGNORECASE)
+        for text in [*(row[0] for block in parts for row in block["rows"] if row), step["hint"]]:
+            places = re.search(PLACES_OF_BLOCKS[language], text, re.IGNORECASE)
             is_first_one = number == 1  # "your first block" of all
-            assert not places or is_first_one, said
+            assert not places or is_first_one, text
 
 
 # A question, or an instruction for a pupil.

@@ -401,9 +401,9 @@ def test_the_button_starts_sb_programs(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("language", LANGUAGES)
 def test_every_verdict_has_a_next_step(language: str) -> None:
-    for key, said_so in all_said(language, "lessons").items():
+    for key, sentence in all_said(language, "lessons").items():
         if key.startswith("said/"):
-            assert said_so.count(". ") + said_so.count("; ") >= 1, key
+            assert sentence.count(". ") + sentence.count("; ") >= 1, key
 
 
 def test_a_wall_that_blocks_a_robot_is_reported_before_the_timeout(tmp_path: Path) -> None:

@@ -34,8 +34,8 @@ in_both = pytest.mark.parametrize("language", LANGUAGES)
 
 
 def answers_of(is_right: bool) -> list[tuple[Path, Answer]]:
-    which = 0 if is_right else 1
-    return [(folder, answer) for folder in FOLDERS for answer in catalogue.answers(folder)[which]]
+    index = 0 if is_right else 1
+    return [(folder, answer) for folder in FOLDERS for answer in catalogue.answers(folder)[index]]
 
 
 def name_of(value: object) -> str:
@@ -200,12 +200,12 @@ def test_advice_never_makes_a_program_worse(folder: Path) -> None:
 
     hint = page_lessons.steps(number, "en")[-1]["hint"]
     _, wrong_answers = catalogue.answers(folder)
-    for program, said in [
+    for program, wrong_sentence in [
         *((answer.program, answer.sentence_by_language["en"]) for answer in wrong_answers),
         *((program, "") for program in page_lessons._programs(number, "en")),
     ]:
         for word, change in ADVISED_CHANGES.items():
-            if word in hint + said and change(program) != program:
+            if word in hint + wrong_sentence and change(program) != program:
                 assert worlds_passed(change(program)) >= worlds_passed(program), (word, program)
 
 

@@ -40,17 +40,17 @@ class Place:
         self.reason = "port_busy"
         self.tries = 0
         monkeypatch.setattr("tiniscript.library.opening.monotonic", lambda: self.now_s)
-        monkeypatch.setattr("tiniscript.library.opening.sleep", self.pass_s)
+        monkeypatch.setattr("tiniscript.library.opening.sleep", self.advance_s)
         monkeypatch.setattr(opening, "_resolve_address", self.resolve)
         monkeypatch.setattr(opening, "_join_shared", lambda *_: None)
         monkeypatch.setattr(opening, "_claim", lambda *_: None)
         monkeypatch.setattr(opening, "_open_connection", self.open_port)
 
-    def pass_s(self, seconds: float) -> None:
+    def advance_s(self, seconds: float) -> None:
         self.now_s += seconds
 
     def resolve(self, port: str, language: str) -> str:
-        self.pass_s(self.search_s)
+        self.advance_s(self.search_s)
         self.free_s = self.now_s + self.busy_s
         return "ble://aa:bb:cc:dd:ee:01"
 

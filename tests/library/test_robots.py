@@ -323,10 +323,10 @@ def test_a_connection_succeeds_while_others_stop_the_robot(stops: int, patience:
     client = client_of(line := StoppedAtFirst(stops))
     client.port, client.language, client._poll = "P", "en", lambda: None
     if patience >= stops:
-        assert client.meet(is_patient=lambda: next(answers)) is THE_ROBOT
+        assert client.meet(should_retry=lambda: next(answers)) is THE_ROBOT
         return
     with raises_error(tiniscript.RobotError, "stopped_elsewhere"):
-        client.meet(is_patient=lambda: next(answers))
+        client.meet(should_retry=lambda: next(answers))
     assert line.stops == stops - patience - 1
 
 
@@ -471,9 +471,9 @@ def test_a_missing_port_has_one_reason(monkeypatch: pytest.MonkeyPatch) -> None:
         assert ("/dev/other" in str(error_info.value)) == bool(listed)
 
 
-@pytest.mark.parametrize("watches", [True, False])
+@pytest.mark.parametrize("is_watched", [True, False])
 def test_a_run_of_another_command_continues_after_the_connection_is_left(
-    pty_robot: PtyRobot, watches: bool
+    pty_robot: PtyRobot, is_watched: bool
 ) -> None:
     """A thread holds the port until the other has ended.."""
     robot = tiniscript.connect(pty_robot.port)
@@ -483,7 +483,7 @@ def test_a_run_of_another_command_continues_after_the_connection_is_left(
     )
     other_command.until("running")
     pty_robot.until(lambda: "MOTORS 30 30" in pty_robot.actions, "it does the other's")
-    if watches:
+    if is_watched:
         with raises_error(tiniscript.RobotError, "replaced"):
             robot.wait()
     with pytest.warns(RuntimeWarning, match="holds the port until the other command has ended."):

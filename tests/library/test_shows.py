@@ -75,7 +75,7 @@ def test_the_copies_of_a_def_are_one_show() -> None:
 
 
 def test_a_map_of_another_text_names_nothing() -> None:
-    places = tuple(MapLocation(k, *locationfset) for k, locationfset in enumerate(
+    places = tuple(MapLocation(k, *span) for k, span in enumerate(
         [(9, 1, 9, 5), (1, 1, 0, 0), (1, 1, 1, 5), (1, 6, 1, 9), (1, 1, 2, 3), (1, 90, 1, 99)]
     ))  # fmt: skip
     shows = Shows(SourceMap("", ("SHOW(X; é", "SHOW"), places))
@@ -86,8 +86,8 @@ def test_a_map_of_another_text_names_nothing() -> None:
 # -- of which program -----------------------------------------------------------------------------
 
 
-def event(program: int, offset: int, run: int = 1) -> ShownEvent:
-    return ShownEvent(1000, 0, run, program, offset)
+def event(program: int, offset: int, run_number: int = 1) -> ShownEvent:
+    return ShownEvent(1000, 0, run_number, program, offset)
 
 
 @pytest.fixture
@@ -101,11 +101,13 @@ def test_a_program_is_found_by_checksum_only() -> None:
     offset = rows(first.code)[-1].offset
     finder = ShowFinder({checksum(first.image): make_source_map(first)})
     assert finder.show_of(event(checksum(first.image), offset)) == Show("DISTANCE", 1, 1)
-    second_event = event(checksum(second.image), offset, run=2)
+    second_event = event(checksum(second.image), offset, run_number=2)
     assert finder.show_of(second_event) is None, "nobody here has it"
     source_map.remember(second.image, make_source_map(second))
     assert finder.show_of(second_event) == Show("LIGHT_R", 1, 1), "it came into the cache later"
-    assert finder.show_of(event(checksum(first.image), offset, run=3)) == Show("DISTANCE", 1, 1)
+    assert finder.show_of(event(checksum(first.image), offset, run_number=3)) == Show(
+        "DISTANCE", 1, 1
+    )
     assert finder.show_of(event(checksum(first.image), -1)) is None
     assert ShowFinder().show_of(ShownEvent(1000, 0)) is None, "of an older robot"
 
@@ -122,7 +124,10 @@ def test_equal_code_is_named_by_its_own_text() -> None:
     finder = ShowFinder(maps)
     names = [finder.show_of(event(program, offset))]
     maps[program] = make_source_map(second)
-    names += [finder.show_of(event(program, offset)), finder.show_of(event(program, offset, run=2))]
+    names += [
+        finder.show_of(event(program, offset)),
+        finder.show_of(event(program, offset, run_number=2)),
+    ]
     assert [show and show.text for show in names] == ["NEAR", "NEAR", "FAR"], "until its next run"
 
 
@@ -134,7 +139,11 @@ def test_the_name_of_a_value_does_not_depend_on_earlier_values() -> None:
     map_by_checksum = {
         checksum(program.image): make_source_map(program) for program in programs[:2]
     }
-    events = [event(checksum(program.image), offset, run) for program in programs for run in (1, 2)]
+    events = [
+        event(checksum(program.image), offset, run_number)
+        for program in programs
+        for run_number in (1, 2)
+    ]
     for earlier_events in product(events, repeat=2):
         for shown_last in events:
             finder = ShowFinder(map_by_checksum)
@@ -155,10 +164,10 @@ def test_a_run_keeps_the_text_that_it_began_with() -> None:
     program, offset = checksum(texts[0].image), rows(texts[0].code)[-1].offset
     maps: dict[int, SourceMap] = {}
     finder = ShowFinder(maps)
-    for run, compilation in enumerate(texts):
+    for run_number, compilation in enumerate(texts):
         maps[program] = make_source_map(compilation)
-        finder.begin(run % 2, program)
-    names = [finder.show_of(event(program, offset, run)) for run in (1, 0, 1)]
+        finder.begin(run_number % 2, program)
+    names = [finder.show_of(event(program, offset, run_number)) for run_number in (1, 0, 1)]
     assert [show and show.text for show in names] == ["FAR", "THIRD", "FAR"]
     finder.begin(1, program + 1)
     assert finder.show_of(event(program + 1, offset, 1)) is None

@@ -81,7 +81,7 @@ class Network:
     def end_browsing(self) -> None:
         self.browser_count -= 1
 
-    def pass_time(self, seconds: float) -> None:
+    def advance_time(self, seconds: float) -> None:
         self.now_ms += int(seconds * 1000)
         for kind, name in self.events:
             getattr(self.listener, f"{kind}_service")(self, SERVICE, f"{name}.{SERVICE}")
@@ -103,7 +103,7 @@ def played(monkeypatch: pytest.MonkeyPatch) -> Network:
     played_network = Network()
     monkeypatch.setattr(network, "Zeroconf", played_network.open)
     monkeypatch.setattr(network, "ServiceBrowser", played_network.browse)
-    monkeypatch.setattr(network, "sleep", played_network.pass_time)
+    monkeypatch.setattr(network, "sleep", played_network.advance_time)
     monkeypatch.setattr(network, "monotonic", lambda: played_network.now_ms / 1000)
     return played_network
 

@@ -200,12 +200,12 @@ def test_a_missing_bluetooth_package_is_reported_with_the_next_step(
 # -- the pace -----------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(("service", "sizes", "wanted_pauses_s"), [
+@pytest.mark.parametrize(("service", "sizes", "expected_pauses_s"), [
     (HM10, [20, 20, 20, 5], [0.0208, 0.0208, 0.0208]),
     (NORDIC, [65], []),
 ])  # fmt: skip
 def test_an_hm10_gets_no_more_than_its_uart_passes_on(
-    service: str, sizes: list[int], wanted_pauses_s: list[float], monkeypatch: pytest.MonkeyPatch
+    service: str, sizes: list[int], expected_pauses_s: list[float], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """It drops earlier bytes; 20 bytes take 20.8 ms at 9600 baud."""
     from tiniscript.link.transports import bluetooth
@@ -237,7 +237,7 @@ def test_an_hm10_gets_no_more_than_its_uart_passes_on(
         get_running_loop=lambda: SimpleNamespace(time=lambda: now_s[0]),
     ))  # fmt: skip
     port.write(bytes(65))
-    assert (write_sizes, slept) == (sizes, wanted_pauses_s)
+    assert (write_sizes, slept) == (sizes, expected_pauses_s)
 
 
 def test_a_scan_that_fails_or_is_cancelled_is_stopped(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -175,20 +175,22 @@ def test_ctrl_c_releases_the_device(
     with monkeypatch.context() as patch:
         patch.setattr(event_loop, "Bell", bell)
         with pytest.raises(KeyboardInterrupt):
-            connects_until(loop, device, patch)
+            connect_with_interrupt(loop, device, patch)
     assert device.clients == []
     check_next_client_works(loop, device)
 
 
-def connects_until(loop: event_loop.EventLoop, device: Device, patch: pytest.MonkeyPatch) -> None:
+def connect_with_interrupt(
+    loop: event_loop.EventLoop, device: Device, patch: pytest.MonkeyPatch
+) -> None:
     """Press Ctrl-C once during a connection; the clean-up afterwards is not interrupted."""
     run = loop.run
-    runs = 0
+    run_count = 0
 
     def count_runs(coroutine: Any, timeout_s: float) -> Any:
-        nonlocal runs
-        runs += 1
-        if runs == 2:
+        nonlocal run_count
+        run_count += 1
+        if run_count == 2:
             patch.undo()
         return run(coroutine, timeout_s)
 

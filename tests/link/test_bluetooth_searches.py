@@ -38,7 +38,7 @@ class SimulatedSelector(selectors.DefaultSelector):
         return super().select(0)
 
 
-class Seen(NamedTuple):
+class Sighting(NamedTuple):
     """What a scan has heard from a device: it may leave out its name, or what it offers."""
 
     time_s: float
@@ -54,7 +54,7 @@ class Radio:
     def __init__(self, rng: random.Random, now_s: Callable[[], float]) -> None:
         self.rng, self.now_s = rng, now_s
         self.name_by_address = {address: rng.choice(NAMES) for address in ADDRESSES}
-        self.heard: list[Seen] = []
+        self.heard: list[Sighting] = []
         self.failing: set[Any] = set()
         self.scan = 0
         self.scanner: Scanner | None = None  # which scans now
@@ -64,9 +64,9 @@ class Radio:
             self.failing.add(asyncio.current_task())
             raise OSError("the adapter is gone")
         return [
-            SimpleNamespace(address=seen.address, name=seen.name or None)
-            for seen in self.heard
-            if seen.scan == self.scan
+            SimpleNamespace(address=sighting.address, name=sighting.name or None)
+            for sighting in self.heard
+            if sighting.scan == self.scan
         ]
 
     async def advertise(self) -> None:
@@ -78,7 +78,7 @@ class Radio:
             address = self.rng.choice(ADDRESSES)
             name = self.rng.choice((self.name_by_address[address], ""))
             service = self.rng.choice((search.NORDIC_UART.upper(), search.HM10, LAMP, LAMP))
-            self.heard.append(Seen(self.now_s(), self.scan, address, name, service != LAMP))
+            self.heard.append(Sighting(self.now_s(), self.scan, address, name, service != LAMP))
             is_local = self.rng.random() < 0.5
             self.scanner.notice(
                 SimpleNamespace(address=address, name="" if is_local else name),
@@ -102,8 +102,8 @@ class Scanner:
         for address, name in self.radio.name_by_address.items():
             if self.radio.rng.random() < 0.05:  # this computer is connected to it
                 name = self.radio.rng.choice((name, ""))
-                seen = Seen(self.radio.now_s(), self.radio.scan, address, name, True)
-                self.radio.heard.append(seen)
+                sighting = Sighting(self.radio.now_s(), self.radio.scan, address, name, True)
+                self.radio.heard.append(sighting)
         self.is_started = True
 
     async def stop(self) -> None:
@@ -158,38 +158,43 @@ class Scan(search._Scan):
 class Model:
     """What a scan knows at some time."""
 
-    def __init__(self, heard: list[Seen], most: int) -> None:
-        self.heard, self.most = heard, most
+    def __init__(self, heard: list[Sighting], max_devices: int) -> None:
+        self.heard, self.max_devices = heard, max_devices
 
-    def at(self, time_s: float, scan: int) -> dict[str, Seen]:
-        known: dict[str, Seen] = {}
-        for seen in self.heard:
-            earlier = known.get(seen.address)
+    def at(self, time_s: float, scan: int) -> dict[str, Sighting]:
+        known: dict[str, Sighting] = {}
+        for sighting in self.heard:
+            earlier = known.get(sighting.address)
             if (
-                seen.scan != scan
-                or seen.time_s > time_s
-                or (not earlier and len(known) == self.most)
+                sighting.scan != scan
+                or sighting.time_s > time_s
+                or (not earlier and len(known) == self.max_devices)
             ):
                 continue
-            known[seen.address] = seen._replace(
-                name=seen.name or (earlier.name if earlier else ""),
-                is_robot=seen.is_robot or bool(earlier and earlier.is_robot),
+            known[sighting.address] = sighting._replace(
+                name=sighting.name or (earlier.name if earlier else ""),
+                is_robot=sighting.is_robot or bool(earlier and earlier.is_robot),
             )
         return known
 
-    def find(self, wanted: str, called_s: float, entered_s: float, scan: int) -> tuple[float, Any]:
+    def find(
+        self, expected: str, called_s: float, entered_s: float, scan: int
+    ) -> tuple[float, Any]:
         """Return when a search ends, and with what."""
-        is_address = wanted in ADDRESSES
+        is_address = expected in ADDRESSES
 
         def matches(time_s: float) -> list[str]:
             return sorted(
                 address
-                for address, seen in self.at(time_s, scan).items()
-                if (address if is_address else seen.name) == wanted
+                for address, sighting in self.at(time_s, scan).items()
+                if (address if is_address else sighting.name) == expected
             )
 
         end_s = called_s + search.SEARCH_S
-        moments_s = [entered_s, *(it.time_s for it in self.heard if entered_s < it.time_s < end_s)]
+        moments_s = [
+            entered_s,
+            *(sighting.time_s for sighting in self.heard if entered_s < sighting.time_s < end_s),
+        ]
         first_s = next((time_s for time_s in moments_s if matches(time_s)), None)
         if first_s is not None:
             end_s = first_s if is_address else min(end_s, first_s + search.LINGER_S)
@@ -199,7 +204,8 @@ class Model:
         if found:
             return end_s, (errors.SEVERAL, ", ".join(f"ble://{address}" for address in found))
         robots = sorted({
-            seen.name or seen.address for seen in self.at(end_s, scan).values() if seen.is_robot
+            sighting.name or sighting.address
+            for sighting in self.at(end_s, scan).values() if sighting.is_robot
         })  # fmt: skip
         return end_s, (errors.NOT_FOUND, ", ".join(robots))
 
@@ -210,8 +216,8 @@ def test_each_search_finds_what_was_in_reach_in_its_scan(
 ) -> None:
     rng, selector = random.Random(seed), SimulatedSelector()
     radio = Radio(rng, lambda: selector.now_s)
-    most = rng.choice((1000, 3))
-    monkeypatch.setattr(search, "MOST_DEVICES", most)
+    max_devices = rng.choice((1000, 3))
+    monkeypatch.setattr(search, "MOST_DEVICES", max_devices)
     monkeypatch.setattr(search, "BleakScanner", lambda notice: Scanner(radio, notice))
     monkeypatch.setattr(search, "_connected_devices", radio.connected_devices)
     loop = asyncio.SelectorEventLoop(selector)
@@ -220,19 +226,19 @@ def test_each_search_finds_what_was_in_reach_in_its_scan(
 
     async def search_once(scan: Scan) -> None:
         await asyncio.sleep(rng.uniform(0, HISTORY_S - 15))
-        wanted = rng.choice((*NAMES, *ADDRESSES[:2], ""))
+        expected = rng.choice((*NAMES, *ADDRESSES[:2], ""))
         called_s = radio.now_s()
         outcome: Any
         try:
-            if wanted:
-                outcome = (await search.find_device(wanted.lower())).address
+            if expected:
+                outcome = (await search.find_device(expected.lower())).address
             else:
                 outcome = [device.address for device in await search.find_robots()]
         except PortError as error:
             outcome = error.reason, error.detail
         except OSError:
             return
-        outcomes.append((asyncio.current_task(), wanted, called_s, outcome))
+        outcomes.append((asyncio.current_task(), expected, called_s, outcome))
 
     async def live(scan: Scan) -> None:
         searches = [asyncio.create_task(search_once(scan)) for _ in range(10)]
@@ -250,16 +256,18 @@ def test_each_search_finds_what_was_in_reach_in_its_scan(
         loop.run_until_complete(live(scan))
     finally:
         loop.close()
-    model = Model(radio.heard, most)
+    model = Model(radio.heard, max_devices)
     assert outcomes
-    for task, wanted, called_s, outcome in outcomes:
+    for task, expected, called_s, outcome in outcomes:
         entered_s, scan_number = scan.entered[task]
-        if wanted:
-            end_s, wanted_outcome = model.find(wanted, called_s, entered_s, scan_number)
+        if expected:
+            end_s, expected_outcome = model.find(expected, called_s, entered_s, scan_number)
         else:
             end_s = entered_s + search.LIST_S
             known = model.at(end_s, scan_number).values()
-            robots = sorted((seen.name, seen.address) for seen in known if seen.is_robot)
-            wanted_outcome = [address for _, address in robots]
-        assert outcome == wanted_outcome, wanted
-        assert scan.left_s[task] == pytest.approx(end_s), wanted
+            robots = sorted(
+                (sighting.name, sighting.address) for sighting in known if sighting.is_robot
+            )
+            expected_outcome = [address for _, address in robots]
+        assert outcome == expected_outcome, expected
+        assert scan.left_s[task] == pytest.approx(end_s), expected

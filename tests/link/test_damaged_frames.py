@@ -117,6 +117,6 @@ if __name__ == "__main__":
     options = make_options(10_000_000, 1_000_000, "large")
     judges = cpp_damage(options.large)
     damaged_count, lines = damage_frames(judges, options.count, options.seed)
-    for sampled in range(0, lines, SAMPLE_INTERVAL):
-        judge_in_python(judges.line(options.seed, sampled), options.large)
+    for line_number in range(0, lines, SAMPLE_INTERVAL):
+        judge_in_python(judges.line(options.seed, line_number), options.large)
     print(f"{damaged_count} damaged frames in {lines} lines: nothing wrong")

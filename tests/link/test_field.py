@@ -128,11 +128,11 @@ def check_no_other_program(cpp: CppLink, seed: int) -> str:
     offset = rng.randrange(len(data))
     # without its first byte a first line is another one, and the next ones are lines of their own
     text_end = offset + (offset > 0 and rng.randrange(2))
-    wanted_programs = programs_of(cpp, text)
+    expected_programs = programs_of(cpp, text)
     robot = Robot(cpp)
     robot.type(data[:offset] + b"\0" + data[text_end:])
     robot.wait(4200)
-    assert robot.programs <= wanted_programs, f"seed {seed}: {text!r} with a 0x00 at {offset}"
+    assert robot.programs <= expected_programs, f"seed {seed}: {text!r} with a 0x00 at {offset}"
     assert robot.programs or robot.answers, f"seed {seed}: silence for {text!r}, a 0x00 at {offset}"
     return "runs" if robot.programs else "told"
 
@@ -140,7 +140,7 @@ def check_no_other_program(cpp: CppLink, seed: int) -> str:
 def check_both_are_heard(cpp: CppLink, seed: int) -> str:
     """A person and a computer, in turns, on one port."""
     rng = random.Random(seed)
-    wanted_of = {text: programs_of(cpp, text) for text in TYPED_PROGRAMS}
+    expected_of = {text: programs_of(cpp, text) for text in TYPED_PROGRAMS}
     robot = Robot(cpp)
     session = Session(rng.getrandbits(32), 115_200, KIT)
     session.is_attached = False
@@ -168,7 +168,7 @@ def check_both_are_heard(cpp: CppLink, seed: int) -> str:
         if "STOP" in robot.did:
             return "a frame was a stop"
         started_programs = {row for row in robot.did[event_count:] if row.startswith("TEXT")}
-        assert started_programs == wanted_of[text], (
+        assert started_programs == expected_of[text], (
             f"seed {seed}: {text!r} did {robot.did[event_count:]}"
         )
         heard_count += 1

@@ -192,7 +192,7 @@ def test_what_is_asked_is_sent_while_nothing_arrives() -> None:
 def test_each_event_and_each_end_of_a_request_is_told_once(seed: int) -> None:
     """They come in their order, those of places alone to who wants them; what has come before the
     line is lost is read before that is said."""
-    chance = Random(seed)
+    rng = Random(seed)
     with closing(Line()) as line:
         line.listen()
         requests: list[Any] = []
@@ -201,19 +201,19 @@ def test_each_event_and_each_end_of_a_request_is_told_once(seed: int) -> None:
         takes_places = is_echoed = False
         for k in range(12):
             events: list[Event] = [
-                chance.choice(
+                rng.choice(
                     (TextEvent(bytes((k, j))), StartedEvent(k, j), PlaceEvent(k, k, j), EchoEvent())
                 )
-                for j in range(chance.choice((0, 0, 1, 3)))
+                for j in range(rng.choice((0, 0, 1, 3)))
             ]
-            if chance.random() < 0.1:
+            if rng.random() < 0.1:
                 line.connection.enable_place_events()
                 takes_places = True
-            if chance.random() < 0.4:
+            if rng.random() < 0.4:
                 requests.append(line.begin())
             with line.connection._session_lock:
                 line.session.waiting_events += events
-                ended = [request for request in requests if chance.random() < 0.3]
+                ended = [request for request in requests if rng.random() < 0.3]
                 for request in ended:
                     request.outcome = "done"
                 requests = [request for request in requests if request not in ended]

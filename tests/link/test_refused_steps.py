@@ -75,9 +75,9 @@ def test_nothing_follows_a_refused_step(name: str) -> None:
         exchange = EXCHANGES[name]
         status = rng.choice([status for status in STATUSES.values() if status != OK])
         all_requests, _ = run(exchange(Random(seed)), 1000, status)
-        step = rng.randrange(len(all_requests))
-        sent_requests, outcome = run(exchange(Random(seed)), step, status)
-        assert sent_requests[: step + 1] == all_requests[: step + 1]
+        step_index = rng.randrange(len(all_requests))
+        sent_requests, outcome = run(exchange(Random(seed)), step_index, status)
+        assert sent_requests[: step_index + 1] == all_requests[: step_index + 1]
         assert outcome != OK
-        for request in sent_requests[step:]:
-            assert request._replace(pause_ms=0) == all_requests[step]._replace(pause_ms=0)
+        for request in sent_requests[step_index:]:
+            assert request._replace(pause_ms=0) == all_requests[step_index]._replace(pause_ms=0)

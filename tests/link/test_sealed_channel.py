@@ -89,20 +89,20 @@ class SealedWorld(World):
 
     def forge_frame(self) -> bytes:
         rng = self.rng
-        forgery = rng.randrange(7)
+        forgery_kind = rng.randrange(7)
         old_frame = rng.choice(self.frames)
-        if forgery == 6 and self.last_request is not None:
+        if forgery_kind == 6 and self.last_request is not None:
             return self.answer_unsealed(self.last_request)
-        if forgery == 0:
+        if forgery_kind == 0:
             return damage_frame(old_frame, rng)
         frame = decode_frame(old_frame.rstrip(b"\0"))
-        if forgery < 3 or frame is None:
+        if forgery_kind < 3 or frame is None:
             return old_frame
-        if forgery == 3:  # a seal is removed, added, or moved to an expected frame
+        if forgery_kind == 3:  # a seal is removed, added, or moved to an expected frame
             number = rng.choice((frame.number, BY_NAME["LIVE"].number))
             frame = frame._replace(number=number, seq=(frame.seq + rng.randrange(3)) & 0xFF)
             return encode_frame(frame._replace(is_sealed=rng.random() < 0.5))
-        if forgery == 4:  # the attacker claims that the robot has no seal, or has done it
+        if forgery_kind == 4:  # the attacker claims that the robot has no seal, or has done it
             status = rng.choice((0, 0, STATUSES["NOT_OWNER"], STATUSES["STALE"]))
             payload = bytes([status]) + rng.randbytes(rng.choice((0, 2, 8)))
             return encode_frame(frame._replace(payload=payload, is_reply=True, is_sealed=False))

@@ -57,7 +57,7 @@ PROGRAMS = (
 
 class UseResult(NamedTuple):
     rows: list[str]
-    took_ms: list[int]
+    durations_ms: list[int]
 
 
 def first_use(rng: random.Random) -> Wire:
@@ -125,7 +125,7 @@ def restart(rng: random.Random, wire: Wire) -> None:
 def second_use(rng: random.Random, session: Session, robot: HostFirmware) -> UseResult:
     """Make some requests one after the other; return the results."""
     results: list[str] = []
-    took_ms: list[int] = []
+    durations_ms: list[int] = []
     for _ in range(4):
         upload = partial(session.upload, image_of(rng.choice(PROGRAMS)), saves=rng.random() < 0.5)
         live_request = partial(session.live, image_of(PROGRAMS[0]).code)
@@ -145,7 +145,7 @@ def second_use(rng: random.Random, session: Session, robot: HostFirmware) -> Use
         status = robot.until(session, request)
         assert request.outcome
         results.append(f"{status} {request.outcome.values if status == OK else ''}")
-        took_ms.append(robot.now_ms - start_ms)
+        durations_ms.append(robot.now_ms - start_ms)
         start_ms = robot.now_ms
         if rng.random() < 0.3:
             session.stop(robot.now_ms)
@@ -157,7 +157,7 @@ def second_use(rng: random.Random, session: Session, robot: HostFirmware) -> Use
     results += [str(event) for event in session.events()]
     return UseResult([re.sub(r"\b(run|boot|damaged|dropped|nonce)=\d+", r"\1",
         row) for row in results],
-                took_ms)  # fmt: skip
+                durations_ms)  # fmt: skip
 
 
 def ends_are_told_once(events: list[Event]) -> bool:
@@ -185,11 +185,11 @@ def check(seed: int) -> str:
     session.tells_starts = True
     assert other_use.robot.until(session, session.hello()) == OK
     actual = second_use(random.Random(seed), used_wire.session, used_wire.robot)
-    wanted_use = second_use(random.Random(seed), session, other_use.robot)
-    assert actual.rows == wanted_use.rows, f"seed {seed}\n{actual.rows}\nnot\n{wanted_use.rows}"
-    delays_ms = [a - b for a, b in zip(actual.took_ms, wanted_use.took_ms, strict=True)]
+    expected_use = second_use(random.Random(seed), session, other_use.robot)
+    assert actual.rows == expected_use.rows, f"seed {seed}\n{actual.rows}\nnot\n{expected_use.rows}"
+    delays_ms = [a - b for a, b in zip(actual.durations_ms, expected_use.durations_ms, strict=True)]
     assert all(abs(delay_ms) < LATER_MS for delay_ms in delays_ms), f"seed {seed} {delays_ms}"
-    return "it runs" if "DoneEvent" in str(wanted_use) else "it stands"
+    return "it runs" if "DoneEvent" in str(expected_use) else "it stands"
 
 
 def open_wire(rng: random.Random) -> Wire:

@@ -72,7 +72,9 @@ def test_a_retry_waits_for_the_line_and_then_twice_as_long_up_to_a_second(
     assert abs(times[0] - first_wait_ms) <= 2
     gaps = [later_ms - earlier_ms for earlier_ms, later_ms in pairwise(times)]
     doubled = [min(times[0] << k, MOST_DOUBLED_MS) for k in range(1, len(gaps) + 1)]
-    assert all(abs(gap - wanted_gap) <= 2 for gap, wanted_gap in zip(gaps, doubled, strict=True))
+    assert all(
+        abs(gap - expected_gap) <= 2 for gap, expected_gap in zip(gaps, doubled, strict=True)
+    )
     assert len({data for _, data in packets}) == 1 and packets[0][1][:1] == b"\0"
     assert 20 <= len(packets) + 1 <= TRIES
     list_packets(session, 2 * EXCHANGE_TIMEOUT_MS)
@@ -87,14 +89,16 @@ def test_a_retry_learns_how_long_an_answer_takes() -> None:
     session.is_attached = False
     now_ms = 0
 
-    def measure_waits(took_ms: int) -> list[int]:
+    def measure_waits(answer_delay_ms: int) -> list[int]:
         """Ask, and be answered; return how long after each sending the next one came."""
         nonlocal now_ms
         session.ping()
         start_ms = now_ms
         data = session.poll(now_ms)
-        times = [sent_ms - start_ms for sent_ms, _ in list_packets(session, start_ms + took_ms)]
-        now_ms = start_ms + took_ms
+        times = [
+            sent_ms - start_ms for sent_ms, _ in list_packets(session, start_ms + answer_delay_ms)
+        ]
+        now_ms = start_ms + answer_delay_ms
         session.receive(answer(data, {"state": 0, "run": 0, "place": b""}), now_ms)
         return [later_ms - earlier_ms for earlier_ms, later_ms in pairwise([0, *times])]
 
@@ -471,8 +475,8 @@ def test_a_line_unknown_to_an_older_machine_is_refused(
     assert request.outcome and (request.outcome.status, request.outcome.detail) == version
 
 
-@pytest.mark.parametrize(("busy_ms", "wanted_status"), [(60_000, STATUSES["BUSY"]), (1000, LOST)])
-def test_a_busy_robot_is_retried_for_a_limited_time(busy_ms: int, wanted_status: int) -> None:
+@pytest.mark.parametrize(("busy_ms", "expected_status"), [(60_000, STATUSES["BUSY"]), (1000, LOST)])
+def test_a_busy_robot_is_retried_for_a_limited_time(busy_ms: int, expected_status: int) -> None:
     """One that answers is not lost; one that falls silent then is."""
     session = greet()
     request = session.upload(unpack(pack("SI", 0, FORWARD)))
@@ -482,7 +486,7 @@ def test_a_busy_robot_is_retried_for_a_limited_time(busy_ms: int, wanted_status:
         if data and now_ms < busy_ms:
             session.receive(answer(data, {}, STATUSES["BUSY"]), now_ms)
         now_ms += 10
-    assert request.outcome and request.outcome.status == wanted_status
+    assert request.outcome and request.outcome.status == expected_status
     assert now_ms <= EXCHANGE_TIMEOUT_MS + 1000
 
 
@@ -566,13 +570,13 @@ def test_the_end_of_a_run_waits_for_its_readings_and_nobody_else_does(reading_co
     """Its event is lost; a robot that sends readings endlessly still obeys requests."""
     session, poll_ms = session_after_run()
     values: dict[str, int | bytes] = {"run": 1, "sensor": 0, "value": 7, "ms": 0}
-    told_count, request = 0, session.name(b"Ana")
+    sent_reading_count, request = 0, session.name(b"Ana")
     for _ in range(100):
         poll_ms += 20
         data = session.poll(poll_ms)
-        if told_count < reading_count:
-            session.receive(event("READING", told_count, values, epoch=10), poll_ms)
-            told_count += 1
+        if sent_reading_count < reading_count:
+            session.receive(event("READING", sent_reading_count, values, epoch=10), poll_ms)
+            sent_reading_count += 1
         if data:
             frame = decode_frame(data.strip(b"\0"))
             assert frame
@@ -581,7 +585,9 @@ def test_the_end_of_a_run_waits_for_its_readings_and_nobody_else_does(reading_co
             session.receive(answer(data, reply), poll_ms)
     assert request.outcome and request.outcome.status == 0
     names = [event.name for event in session.events()]
-    assert names == ["READING"] * told_count + ["DONE"] * (told_count == reading_count)
+    assert names == ["READING"] * sent_reading_count + ["DONE"] * (
+        sent_reading_count == reading_count
+    )
 
 
 def test_an_upload_waiting_for_the_button_reports_the_end_of_the_previous_run() -> None:
@@ -617,7 +623,7 @@ def count_namings(statuses: list[int]) -> tuple[int, int]:
 
 
 @pytest.mark.parametrize(
-    ("statuses", "times", "wanted_status"),
+    ("statuses", "times", "expected_status"),
     [
         ([LOW_SUPPLY], 1 + 4, LOW_SUPPLY),
         ([SAVING], 1 + 12, SAVING),
@@ -630,9 +636,9 @@ def count_namings(statuses: list[int]) -> tuple[int, int]:
     ],
 )
 def test_a_low_voltage_has_a_shorter_timeout(
-    statuses: list[int], times: int, wanted_status: int
+    statuses: list[int], times: int, expected_status: int
 ) -> None:
-    assert count_namings(statuses) == (times, wanted_status)
+    assert count_namings(statuses) == (times, expected_status)
 
 
 def reported_places(*replies: bytes) -> list[tuple[int, int]]:

@@ -80,8 +80,8 @@ class Talk:
         self.session.receive(self.to_computer.receive(self.now_ms), self.now_ms)
         self.now_ms += STEP_MS
 
-    def wait(self, request: PendingRequest[Any], most_ms: int = 600_000) -> int:
-        end_ms = self.now_ms + most_ms
+    def wait(self, request: PendingRequest[Any], limit_ms: int = 600_000) -> int:
+        end_ms = self.now_ms + limit_ms
         while request.outcome is None and self.now_ms < end_ms:
             self.step()
         assert request.outcome, "it has no end"
@@ -142,15 +142,15 @@ def test_a_long_program_is_not_given_up_for_its_total_losses(in_a_row: int, seed
     talk.to_robot = wire
     talk.wait(talk.session.hello())
     wire.max_in_a_row = in_a_row
-    most_losses = 0
+    max_losses = 0
     for code_bytes in (7000, 7000) if is_large else [380] * 6:
         losses_before = wire.losses
         request = talk.session.upload(program(code_bytes), runs=False)
         request.limit_ms = REQUEST_TIMEOUT_MS
         status = talk.wait(request)
-        most_losses = max(most_losses, wire.losses - losses_before)
-        assert status == OK, most_losses
-    assert most_losses > TRIES or in_a_row == 1 or not is_large, most_losses
+        max_losses = max(max_losses, wire.losses - losses_before)
+        assert status == OK, max_losses
+    assert max_losses > TRIES or in_a_row == 1 or not is_large, max_losses
 
 
 @pytest.mark.parametrize("is_large", [False, True])

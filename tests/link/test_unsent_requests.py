@@ -21,11 +21,11 @@ from tiniscript.link.session import Session
 
 FAULTING_PROGRAM = "SHOW(1 / DISTANCE)"  # at once
 SOON_FAULTING_PROGRAM = "W(0.6); SHOW(1 / DISTANCE)"
-Happens = Callable[[HostFirmware], HostFirmware]
+Interruption = Callable[[HostFirmware], HostFirmware]
 Ask = Callable[[Session], PendingRequest[ReceiptReply]]
 
 
-def busy_line(session: Session, robot: HostFirmware, kind: str) -> None:
+def send_unheard_request(session: Session, robot: HostFirmware, kind: str) -> None:
     """Send a request that the robot does not hear."""
     if kind == "heartbeat":
         robot.now_ms += 2000
@@ -34,7 +34,7 @@ def busy_line(session: Session, robot: HostFirmware, kind: str) -> None:
     assert session.poll(robot.now_ms)
 
 
-def stopped_by_hand(robot: HostFirmware) -> HostFirmware:
+def stop_by_hand(robot: HostFirmware) -> HostFirmware:
     robot.push()  # its STOPPED is lost
     return robot
 
@@ -47,7 +47,7 @@ REQUEST_NAMES = ["heartbeat", "status", "fetch", "identify", "clear"]
 def test_an_unsent_request_is_executed_after_a_reset(kind: str, make_request: Ask) -> None:
     for seed in (0x9ABCDEF1, 3, 4, 5):
         session, robot = open_session()
-        busy_line(session, robot, kind)
+        send_unheard_request(session, robot, kind)
         request = make_request(session)
         robot = reset(robot, seed)
         assert robot.until(session, request) == OK, seed
@@ -57,9 +57,9 @@ def test_an_unsent_request_is_executed_after_a_reset(kind: str, make_request: As
 @pytest.mark.parametrize("kind", REQUEST_NAMES)
 def test_an_unsent_request_is_void_after_a_stop(kind: str, make_request: Ask) -> None:
     session, robot = running()
-    busy_line(session, robot, kind)
+    send_unheard_request(session, robot, kind)
     requests = [make_request(session), make_request(session)]
-    robot = stopped_by_hand(robot)
+    robot = stop_by_hand(robot)
     robot.codes()
     for request in requests:
         assert robot.until(session, request) == STATUSES["STALE"]
@@ -87,9 +87,9 @@ def test_an_unsent_request_is_executed_after_a_fault(is_told: bool, make_request
 def test_a_request_after_an_immediate_fault_is_executed(verb: str, make_request: Ask) -> None:
     session, robot = open_session()
     faulty = image(FAULTING_PROGRAM)
-    begun = session.live(faulty.code) if verb == "live" else session.upload(faulty)
+    first_request = session.live(faulty.code) if verb == "live" else session.upload(faulty)
     request = make_request(session)
-    assert robot.until(session, begun) == OK
+    assert robot.until(session, first_request) == OK
     assert robot.until(session, request) == OK
     robot.talk(session, 1000)
     assert "SHOW" in [event.name for event in session.events()]

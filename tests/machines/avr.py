@@ -81,7 +81,7 @@ def run_on(
     return parse_run(answer(chip, b"P" + pace.pack(kit) + request))
 
 
-def answer(chip: str, request: bytes, most_seconds: int = 120) -> str:
+def answer(chip: str, request: bytes, limit_s: int = 120) -> str:
     """Return the program's answer to a request. Raises TimeoutExpired."""
-    lines = avr_bench.run(program(chip), request, COMPILER_ARGUMENTS[chip][0], most_seconds)
+    lines = avr_bench.run(program(chip), request, COMPILER_ARGUMENTS[chip][0], limit_s)
     return "".join(f"{line}\n" for line in lines)

@@ -177,7 +177,7 @@ class Simulated:
         self.script: list[str] = []
         self.watched: set[int] = set()
         self.events: list[tuple[int, int, bool]] = []
-        self.level(0, robot.board.start_button, True)  # level of its pull-up
+        self.set_level(0, robot.board.start_button, True)  # level of its pull-up
 
     def bit(self, pin: int) -> Bit:
         return self.avr.bit_by_pin[pin]
@@ -196,10 +196,10 @@ class Simulated:
         number = "abc".index(channel)
         return CONTROLS[timer] + (3 + number if timer in (0, 2) else 8 + 2 * number)
 
-    def level(self, ms: float, pin: int, is_high: bool) -> None:
+    def set_level(self, ms: float, pin: int, is_high: bool) -> None:
         self.events.append((round(ms * MS), pin, is_high))
 
-    def echoes(
+    def set_echoes(
         self,
         trigger: int,
         echo: int,
@@ -263,10 +263,10 @@ class Board(Simulated):
         self.watched.add(PORTS[self.bit(pin).port] - 1)
 
     def press(self, ms: float, release_ms: float) -> None:
-        self.level(ms, self.robot.board.start_button, False)
-        self.level(release_ms, self.robot.board.start_button, True)
+        self.set_level(ms, self.robot.board.start_button, False)
+        self.set_level(release_ms, self.robot.board.start_button, True)
 
-    def analog(self, channel: int, millivolts: int) -> None:
+    def set_analog(self, channel: int, millivolts: int) -> None:
         self.script.append(f"adc {channel} {millivolts}")
 
     # -- the run, and its results
@@ -352,13 +352,13 @@ class Board(Simulated):
         for change in self.changes:
             for pin in self.motor_pins():
                 port, bit = self.bit(pin)
-                wrote = change.address == PORTS[port] and change.value >> bit & 1
+                is_written = change.address == PORTS[port] and change.value >> bit & 1
                 compare = self.avr.compare_by_pin.get(pin)
                 has_pwm = (
                     compare is not None
                     and change.address == CONTROLS[compare.timer]
                     and change.value & CONNECTIONS[compare.channel]
                 )
-                if wrote or has_pwm:
+                if is_written or has_pwm:
                     positions.append(change.cycle)
         return positions

@@ -20,7 +20,7 @@ class Chip(NamedTuple):
 
     missing: str
     run: Callable[[bytes, Kit, Senses], Ran]
-    most_bytes: int = CODE_BYTES + HEADER_BYTES  # most bytes of an image
+    max_bytes: int = CODE_BYTES + HEADER_BYTES  # most bytes of an image
 
 
 def agrees(run: Ran, expected: Ran, max_ms: int) -> bool:

@@ -96,12 +96,12 @@ class Esp32Robot(HostFirmware):
         self.ask(b"H", pack("<I", milliseconds))
         self.now_ms += milliseconds
 
-    def analog(self, pin: int, value: int) -> None:
+    def set_analog(self, pin: int, value: int) -> None:
         """Set the analog value of a pin, 0 to 4095."""
         self.ask(b"A", pack("<BH", pin, value))
 
-    def digital(self, pin: int, level: bool) -> None:
-        self.ask(b"D", pack("<BB", pin, level))
+    def set_level(self, pin: int, is_high: bool) -> None:
+        self.ask(b"D", pack("<BB", pin, is_high))
 
     def edges(self, *changes: tuple[int, int, bool]) -> tuple[int, int]:
         """Change pins in sequence: the microseconds since the previous change, the pin and its
@@ -121,7 +121,7 @@ class Esp32Robot(HostFirmware):
         """Give the next byte of the cable a framing error."""
         self.ask(b"C", b"\2")
 
-    def sonar(self, trigger: int, echo: int, distance_cm: float) -> None:
+    def set_sonar_distance(self, trigger: int, echo: int, distance_cm: float) -> None:
         """Set the distance of a sensor's obstacle, or none with 0."""
         self.ask(b"U", pack("<BBI", trigger, echo, round(distance_cm * US_PER_CM)))
 

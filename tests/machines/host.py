@@ -84,8 +84,8 @@ class Process:
     has room for about a thousand pipes.
     """
 
-    def __init__(self, command: Sequence[str | Path], who: str) -> None:
-        self._who = who
+    def __init__(self, command: Sequence[str | Path], name: str) -> None:
+        self._who = name
         self._stderr_file = tempfile.TemporaryFile()  # noqa: SIM115
         self._process = subprocess.Popen(
             command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self._stderr_file
@@ -200,8 +200,8 @@ class Host(Process):
         verdicts: number of the rule and offset, 0 and 0 for accepted code.
         """
         answer = self.ask(b"X", bytes((sensors, actuators, first)))
-        accepted, bad, checksum = Struct("<III").unpack(answer)
-        return accepted, bad, checksum
+        accepted, wrong_count, checksum = Struct("<III").unpack(answer)
+        return accepted, wrong_count, checksum
 
 
 def run_request(

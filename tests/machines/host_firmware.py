@@ -127,7 +127,7 @@ class HostFirmware(Process):
         self.wait(milliseconds)
         self.step(flags=2)
 
-    def sense(self, *readings: int) -> None:
+    def set_readings(self, *readings: int) -> None:
         """Set the readings of the sensors, in thousandths."""
         self.ask(b"V", pack(f"<{len(readings)}i", *readings))
 
@@ -135,7 +135,7 @@ class HostFirmware(Process):
         """Return the remote control as a program reads it: KEY_UP to KEY_B, PAD_X and PAD_Y."""
         return unpack("<8i", self.ask(b"K", b""))
 
-    def discs(self, cm: int, degrees: int, left: int = 0, right: int = 0) -> None:
+    def mount_discs(self, cm: int, degrees: int, left: int = 0, right: int = 0) -> None:
         """Put discs on both wheels; the distance between two edges is given as in a robot's header.
 
         They are this many thousandths of the way after an edge.
@@ -151,11 +151,11 @@ class HostFirmware(Process):
         left, right = unpack("<ii", self.ask(b"O", b""))
         return left / 1000, right / 1000
 
-    def pace(self, ticks: int) -> None:
+    def set_byte_ticks(self, ticks: int) -> None:
         """Set the ticks that each sent byte takes, as on a slow line."""
         self.ask(b"P", bytes((ticks,)))
 
-    def supply(self, is_low: bool) -> None:
+    def set_supply(self, is_low: bool) -> None:
         """Lower the voltage below the limit for saving, or restore it."""
         self.ask(b"L", pack("<B", is_low))
 
@@ -190,7 +190,7 @@ class HostFirmware(Process):
             data = session.poll(self.now_ms)
             self._turn(session, data, end_ms - self.now_ms, flags)
 
-    def pass_time(self, session: Session | None, milliseconds: int, flags: int = 0) -> None:
+    def advance_time(self, session: Session | None, milliseconds: int, flags: int = 0) -> None:
         """Let time pass, with an event at its beginning, with or without a computer."""
         if session is not None:
             self.talk(session, min(1, milliseconds), flags)
@@ -200,10 +200,10 @@ class HostFirmware(Process):
             if milliseconds > 1:
                 self.wait(milliseconds - 1)
 
-    def _turn(self, session: Session, data: bytes, most_ms: int, flags: int = 0) -> None:
+    def _turn(self, session: Session, data: bytes, limit_ms: int, flags: int = 0) -> None:
         """Let a millisecond pass, or more while neither side sends."""
         wakes_ms = session.next_wake_ms()
-        quiet_ms = most_ms if wakes_ms is None else min(most_ms, wakes_ms - self.now_ms)
+        quiet_ms = limit_ms if wakes_ms is None else min(limit_ms, wakes_ms - self.now_ms)
         if data or flags or quiet_ms < 2:
             sent_bytes = self.step(data, flags)
         else:

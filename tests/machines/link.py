@@ -107,10 +107,10 @@ class CppLink:
         heard_counter: int,
         sent_counter: int,
         own: bytes,
-        given_bytes: bytes,
+        payload: bytes,
     ) -> bytes:
         return self.ask(
-            b"X", key + origin + pack("<II", heard_counter, sent_counter) + texts(own, given_bytes)
+            b"X", key + origin + pack("<II", heard_counter, sent_counter) + texts(own, payload)
         )
 
     def fetch_image(self) -> bytes:
@@ -136,8 +136,8 @@ class LinkLibrary(CppLink):
         self._answer.restype = ctypes.c_void_p
 
     def ask(self, letter: bytes, request: bytes) -> bytes:
-        asked_bytes, length = letter + request, ctypes.c_uint32()
-        answer = self._answer(asked_bytes, len(asked_bytes), ctypes.byref(length))
+        full_request, length = letter + request, ctypes.c_uint32()
+        answer = self._answer(full_request, len(full_request), ctypes.byref(length))
         return ctypes.string_at(answer, length.value)
 
 

@@ -27,7 +27,7 @@ class Pace(NamedTuple):
     """A call at multiples of so many milliseconds; slow sensors, not ready from one time to
     another in each period."""
 
-    every_ms: int = 1
+    call_interval_ms: int = 1
     slow: Sequence[str] = ()
     period_ms: int = 1
     from_ms: int = 0
@@ -37,7 +37,9 @@ class Pace(NamedTuple):
         """Return the start of a request to a machine in C++."""
         names = [sensor.name for sensor in kit.readings]
         slow_sensors = sum(1 << names.index(name) for name in self.slow)
-        return pack("<5I", self.every_ms, slow_sensors, self.period_ms, self.from_ms, self.to_ms)
+        return pack(
+            "<5I", self.call_interval_ms, slow_sensors, self.period_ms, self.from_ms, self.to_ms
+        )
 
     def is_slow(self, name: str, now_ms: int) -> bool:
         return name in self.slow and self.from_ms <= now_ms % self.period_ms < self.to_ms
@@ -82,7 +84,7 @@ def trace_at(pace: Pace, machine_of: MachineOf, image: bytes, kit: Kit, senses: 
             robot.record(status, (), f"FAULT {machine.fault}" if status == FAULT else "DONE")
         else:
             wake_ms = max(machine.wake_ms, robot.now_ms + robot.was_slow)
-            robot.now_ms = -(-wake_ms // pace.every_ms) * pace.every_ms
+            robot.now_ms = -(-wake_ms // pace.call_interval_ms) * pace.call_interval_ms
             if robot.now_ms <= senses.max_ms:
                 continue
             robot.now_ms = senses.max_ms

@@ -37,15 +37,15 @@ class ShiftRegister:
         if self.levels[name] == is_high:
             return
         if name in ("clock", "latch"):
-            self._want(ns, name, PULSE_NS, f"a pulse of the {name}", self.changed_ns[name])
+            self._require_ns(ns, name, PULSE_NS, f"a pulse of the {name}", self.changed_ns[name])
         if name == "data":
-            self._want(ns, name, HOLD_NS, "data after the clock", self.clocked_ns)
+            self._require_ns(ns, name, HOLD_NS, "data after the clock", self.clocked_ns)
         if name == "clock" and is_high:
-            self._want(ns, name, SET_UP_NS, "data before the clock", self.changed_ns["data"])
+            self._require_ns(ns, name, SET_UP_NS, "data before the clock", self.changed_ns["data"])
             self._shifted = [self.levels["data"], *self._shifted[:-1]]
             self.clocked_ns = ns
         if name == "latch" and is_high:
-            self._want(ns, name, LATCH_NS, "the clock before the latch", self.clocked_ns)
+            self._require_ns(ns, name, LATCH_NS, "the clock before the latch", self.clocked_ns)
             self._latched = list(self._shifted)
         self.levels[name] = is_high
         self.changed_ns[name] = ns
@@ -59,7 +59,7 @@ class ShiftRegister:
         return sum(bit << k for k, bit in enumerate(bits)) if len(bits) == 8 else None
 
     @staticmethod
-    def _want(ns: float, name: str, least_ns: float, description: str, since_ns: float) -> None:
-        if ns - since_ns < least_ns:
-            violation = f"{description}: {ns - since_ns:.1f} ns, not {least_ns:.0f}"
+    def _require_ns(ns: float, name: str, min_ns: float, description: str, start_ns: float) -> None:
+        if ns - start_ns < min_ns:
+            violation = f"{description}: {ns - start_ns:.1f} ns, not {min_ns:.0f}"
             raise WrongTiming(f"{violation} ({name} at {ns:.0f} ns)")

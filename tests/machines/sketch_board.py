@@ -71,7 +71,7 @@ class SketchBoard(boards.Simulated):
         self.elf = build_sketch(sketch, self.board)
         self.script.append("uart")
 
-    def count(self, pin: int, counts: list[int]) -> None:
+    def set_counts(self, pin: int, counts: list[int]) -> None:
         """Set the results of a pin's conversions; the last one repeats."""
         channel = pin - (CHIPS[self.board].first_analog or 0)
         self.script += [f"next {channel} {-(-count * 5000 // 1023)}" for count in counts]

@@ -24,14 +24,14 @@ def skip_unless_available() -> None:
 def build_uno(name: str, **constants: int) -> Path:
     """Return `tests/uno/NAME.cpp` as an ELF file, with these constants and what it includes."""
     skip_unless_available()
-    given_words = [f"-Dk{constant}={value}L" for constant, value in constants.items()]
+    define_flags = [f"-Dk{constant}={value}L" for constant, value in constants.items()]
     source = SOURCES / f"{name}.cpp"
     flags = (
         f"-mmcu={COMPILER_ARGUMENTS[UNO][0]}",
         *FLAGS,
         *WARNINGS,
         "-DF_CPU=16000000L",
-        *given_words,
+        *define_flags,
     )
     included = re.findall(r'(?m)^#include "(.+)"', source.read_text(encoding="utf-8"))
     contents = [(SOURCES / path).read_bytes() for path in (source.name, *included)]

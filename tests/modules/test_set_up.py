@@ -78,9 +78,9 @@ class Odd:
         count_before = len(self.module.commands)
         reply = self.module.step(data)
         if len(self.module.commands) > count_before:
-            asked_bytes, self._heard = self._heard, b""
+            request_bytes, self._heard = self._heard, b""
             is_deaf = self.deaf in self.module.commands[-1]
-            reply = b"" if is_deaf else (asked_bytes + reply if self.echoes else reply)
+            reply = b"" if is_deaf else (request_bytes + reply if self.echoes else reply)
         if reply:
             self._later.append((self._now_ms + self.late_ms, reply))
         if self._later and self._later[0][0] <= self._now_ms:
@@ -296,7 +296,7 @@ def test_a_truncated_name_is_noticed() -> None:
 
 
 @each_row(
-    "settings, dialect, what",
+    "settings, dialect, unsupported_name",
     [
         (WantedSettings("x" * 20), "HC-06", ""),
         (WantedSettings("x" * 21), "HC-06", "name"),
@@ -318,10 +318,10 @@ def test_a_truncated_name_is_noticed() -> None:
     ],
 )
 def test_unsupported_settings_are_known_in_advance(
-    settings: WantedSettings, dialect: str, what: str
+    settings: WantedSettings, dialect: str, unsupported_name: str
 ) -> None:
     (found_dialect,) = (other for other in DIALECTS if other.name == dialect)
-    assert set_up.unsupported_setting(settings, found_dialect) == what
+    assert set_up.unsupported_setting(settings, found_dialect) == unsupported_name
 
 
 def test_a_name_made_from_an_id_fits_every_module() -> None:
@@ -336,13 +336,13 @@ def test_a_name_made_from_an_id_fits_every_module() -> None:
 @of_each
 def test_earlier_bytes_are_not_part_of_a_command(kind: str, seed: int) -> None:
     """A set-up that was interrupted anywhere in a command, however long ago."""
-    chance = random.Random(f"{kind} {seed}")
-    end: Simulated = KINDS[kind](*([chance.choice(BAUDS)] if not kind.startswith("HC-05") else []))
+    rng = random.Random(f"{kind} {seed}")
+    end: Simulated = KINDS[kind](*([rng.choice(BAUDS)] if not kind.startswith("HC-05") else []))
     wire = SimulatedWire(end, end.baud)
     plain_module = find_only_module(
         SimulatedWire(KINDS[kind](*([end.baud] if not kind.startswith("HC-05") else [])))
     )
-    command = chance.choice(["AT", "AT+", "AT+VERSION", "AT+ROLE?", "AT\r", "A", "w" * 20, "\0"])
+    command = rng.choice(["AT", "AT+", "AT+VERSION", "AT+ROLE?", "AT\r", "A", "w" * 20, "\0"])
     wire.send(command.encode())
-    wire.receive(chance.choice([1, 10, 100, 900]))
+    wire.receive(rng.choice([1, 10, 100, 900]))
     assert find_only_module(wire) == plain_module

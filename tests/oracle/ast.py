@@ -17,8 +17,8 @@ class Expression:
     """An operator, a function or a leaf.
 
     `operator` is NUMBER, TRUTH, VARIABLE, OWN, SENSOR, TIME, MINUS, NOT, or the word or sign of the
-    language. OWN is a value of the DEF around it; its name has both names: `SIDE.SIZE`. `plain`
-    marks a number on its own: with or without one minus, and without parentheses.
+    language. OWN is a value of the DEF around it; its name has both names: `SIDE.SIZE`.
+    `is_literal` marks a number on its own: with or without one minus, and without parentheses.
     """
 
     operator: str
@@ -26,7 +26,7 @@ class Expression:
     parts: tuple[Expression, ...] = ()
     value: Value = 0
     name: str = ""
-    plain: bool = False
+    is_literal: bool = False
 
 
 @dataclass

@@ -10,7 +10,7 @@ from tests.oracle.author_values import (
     WIDE_RANGE_NUMBERS,
     Tokens,
     ValueAuthor,
-    plain,
+    is_single_number,
 )
 from tests.oracle.words import (
     ACTS,
@@ -50,7 +50,7 @@ class Author(ValueAuthor):
             way = [self.rng.choice((*SMALL_NUMBERS, *WIDE_RANGE_NUMBERS, *LONG_DECIMALS))]
         else:
             way = self.seconds() if roll < 0.8 else self.number(2)
-        if plain(way) and way[0].startswith("-"):
+        if is_single_number(way) and way[0].startswith("-"):
             way = ["0"]
         return [*way, self.rng.choice(words)]
 
@@ -169,9 +169,9 @@ class Author(ValueAuthor):
     def loop(self) -> None:
         """LOOP a few times, or FOREVER with a wait in it."""
         roll = self.rng.random()
-        forever = roll < 0.15
+        is_forever = roll < 0.15
         count: Tokens
-        if forever:
+        if is_forever:
             count = ["FOREVER"]
         elif roll < 0.75:
             count = [self.rng.choice(("0", "1", "2", "2", "3", "4", "1.5", "2.4999"))]
@@ -183,10 +183,10 @@ class Author(ValueAuthor):
             count = self.number()
         self.open_block("LOOP", "(", *count, ")")
         self.loops += 1
-        if forever and self.chance(0.97):
+        if is_forever and self.chance(0.97):
             self.pause()
         self.body()
-        if forever and self.chance(0.4):
+        if is_forever and self.chance(0.4):
             self.leave()
         self.loops -= 1
         self.close_block("LOOP")
@@ -201,9 +201,9 @@ class Author(ValueAuthor):
 
     def repeat(self) -> None:
         """WHILE: with a counter, with a wait, or with a BREAK at its end."""
-        counted = self.chance(0.5) and self.has_room
+        is_counted = self.chance(0.5) and self.has_room
         counter = f"N{len(self.variables)}"
-        if counted and counter not in self.taken:
+        if is_counted and counter not in self.taken:
             self.say(counter, "=", "0")
             self.variables[counter] = False
             self.counters.add(counter)
@@ -212,11 +212,11 @@ class Author(ValueAuthor):
             extra_tokens = ["OR", "FALSE"] if self.chance(0.05) else extra_tokens
             self.open_block("WHILE", "(", counter, "<", limit, *extra_tokens, ")")
         else:
-            counted = False
+            is_counted = False
             self.open_block("WHILE", *self.condition())
         self.loops += 1
         self.body()
-        if counted:
+        if is_counted:
             self.say(counter, "=", counter, "+", "1")
         elif self.chance(0.6):
             self.pause()

@@ -52,7 +52,7 @@ LEAST_NUMBER = "-2147483.648"
 _PLAIN = re.compile(r"-?[0-9.]+")
 
 
-def plain(tokens: Tokens) -> bool:
+def is_single_number(tokens: Tokens) -> bool:
     """Return whether an argument is a single number, with or without a minus."""
     return _PLAIN.fullmatch("".join(tokens)) is not None
 
@@ -177,7 +177,7 @@ class ValueAuthor:
         self.constant = self.chance(0.15)
         tokens = self.number(self.rng.choice((1, 2, 2, 3)))
         self.constant = False
-        return ["(", *tokens, ")"] if plain(tokens) else tokens
+        return ["(", *tokens, ")"] if is_single_number(tokens) else tokens
 
     def within(self, low: int, high: int) -> Tokens:
         """A lone number from low to high, or something computed."""

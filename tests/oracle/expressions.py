@@ -81,7 +81,7 @@ class ExpressionParser:
         return True
 
     def arguments(
-        self, count: int, forever: bool = False, unit: str = ""
+        self, count: int, may_be_forever: bool = False, unit: str = ""
     ) -> tuple[Expression | None, ...]:
         """Exactly this many in parentheses; the first may be FOREVER (None) or have a unit."""
         has_unit = False
@@ -90,7 +90,7 @@ class ExpressionParser:
         for number in range(count):
             if number > 0:
                 self.expect(",")
-            if number == 0 and forever and self.accept("FOREVER"):
+            if number == 0 and may_be_forever and self.accept("FOREVER"):
                 expressions.append(None)
             else:
                 expressions.append(self.expression())
@@ -104,27 +104,27 @@ class ExpressionParser:
         """A yes/no value in parentheses."""
         (condition,) = self.arguments(1)
         assert condition is not None
-        self.want_yes_no(condition)
-        self.want_stack((condition,))
+        self.require_yes_no(condition)
+        self.require_stack((condition,))
         return condition
 
-    def want_number(self, expression: Expression | None) -> None:
+    def require_number(self, expression: Expression | None) -> None:
         if expression is not None and expression.is_yes_no:
             self.fail("a number is needed, not a yes/no value")
 
-    def want_yes_no(self, expression: Expression | None) -> None:
+    def require_yes_no(self, expression: Expression | None) -> None:
         if expression is not None and not expression.is_yes_no:
             self.fail("a yes/no value is needed, not a number")
 
-    def want_range(self, expression: Expression | None, low: int, high: int) -> None:
+    def require_range(self, expression: Expression | None, low: int, high: int) -> None:
         """Refuses a lone number out of range; any other expression is limited when it runs."""
-        if expression is not None and expression.plain and not low <= expression.value <= high:
+        if expression is not None and expression.is_literal and not low <= expression.value <= high:
             self.fail("the number is out of range")
 
-    def want_stack(self, arguments: tuple[Expression | None, ...]) -> None:
+    def require_stack(self, arguments: tuple[Expression | None, ...]) -> None:
         """Refuse an expression that needs more stack than there is."""
-        for place, argument in enumerate(arguments):
-            if place + (1 if argument is None else stack_need(argument)) > MAX_STACK:
+        for index, argument in enumerate(arguments):
+            if index + (1 if argument is None else stack_need(argument)) > MAX_STACK:
                 self.fail("the expression is too long")
 
     # Expressions, from loosest to tightest
@@ -136,9 +136,9 @@ class ExpressionParser:
         """A chain of ANDs or of ORs."""
         left = tighter()
         while self.accept(operator):
-            self.want_yes_no(left)
+            self.require_yes_no(left)
             right = tighter()
-            self.want_yes_no(right)
+            self.require_yes_no(right)
             left = Expression(operator, True, (left, right))
         return left
 
@@ -146,7 +146,7 @@ class ExpressionParser:
         """NOT is looser than the comparators: NOT X = 5 is NOT (X = 5)."""
         if self.accept("NOT"):
             value = self.negation()
-            self.want_yes_no(value)
+            self.require_yes_no(value)
             return Expression("NOT", True, (value,))
         return self.comparison()
 
@@ -177,9 +177,9 @@ class ExpressionParser:
         """A chain of operators of the same strength, from left to right."""
         left = tighter()
         while operator := self.accept(*operators):
-            self.want_number(left)
+            self.require_number(left)
             right = tighter()
-            self.want_number(right)
+            self.require_number(right)
             left = Expression(operator, False, (left, right))
         return left
 
@@ -189,7 +189,7 @@ class ExpressionParser:
             if self.token.kind == "number":
                 return self.number(-1)
             value = self.factor()
-            self.want_number(value)
+            self.require_number(value)
             return Expression("MINUS", False, (value,))
         if self.token.kind == "number":
             return self.number(1)
@@ -200,14 +200,14 @@ class ExpressionParser:
         if not LOWEST_VALUE <= value <= HIGHEST_VALUE:
             self.fail("the number is out of range")
         self.at += 1
-        return Expression("NUMBER", False, value=value, plain=True)
+        return Expression("NUMBER", False, value=value, is_literal=True)
 
     def leaf(self) -> Expression:
         """Parentheses, a function, TRUE, FALSE, TIME, a sensor or a variable."""
         if self.accept("("):
             inner = self.expression()
             self.expect(")")
-            return replace(inner, plain=False)
+            return replace(inner, is_literal=False)
         if self.token.kind != "word":
             self.fail(f"a value is expected, not {self.token.text!r}")
         word = self.token.text
@@ -215,7 +215,7 @@ class ExpressionParser:
         if word in FUNCTIONS:
             arguments = self.arguments(FUNCTIONS[word])
             for argument in arguments:
-                self.want_number(argument)
+                self.require_number(argument)
             return Expression(word, False, tuple(a for a in arguments if a is not None))
         if word in ("TRUE", "FALSE"):
             return Expression("TRUTH", True, value=word == "TRUE")

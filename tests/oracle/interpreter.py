@@ -27,12 +27,13 @@ def run(
     max_steps: int = 10_000_000,
     seed: int = 1,
     is_slow: IsSlow = always_ready,
-    every_ms: int = 1,
+    call_interval_ms: int = 1,
 ) -> str:
     """Runs a program and returns all that the run prints; raises Mistake if it is wrong.
 
     Readings are in thousandths, 0 or 1 for yes/no. Wrong use is a ValueError. `is_slow` says
-    whether a sensor is not ready at a time; the program continues at multiples of `every_ms`.
+    whether a sensor is not ready at a time; the program continues at multiples of
+    `call_interval_ms`.
     """
     ranges = {device.name: (device.low, device.high) for device in kit.readings}
     for name, values in sensors.items():
@@ -45,6 +46,6 @@ def run(
     sys.setrecursionlimit(max(sys.getrecursionlimit(), 10_000))
     program = Parser(text, kit).program()
     robot = TaskRobot(program, kit, sensors, max_time_ms, max_steps, seed)
-    robot.is_slow, robot.every_ms = is_slow, every_ms
+    robot.is_slow, robot.call_interval_ms = is_slow, call_interval_ms
     robot.run()
     return "".join(robot.trace)

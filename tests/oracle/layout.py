@@ -33,11 +33,11 @@ class Layout:
             return token.lower()
         return "".join(self.rng.choice((c.upper(), c.lower())) for c in token)
 
-    def gap(self, left: str, right: str, in_parentheses: bool) -> str:
+    def gap(self, left: str, right: str, is_in_parentheses: bool) -> str:
         """Return the text between two tokens of an instruction."""
         rng = self.rng
         has_words = left[-1] not in "(),=<>+-*/%" and right[0] not in "(),=<>+-*/%"
-        if self.ends != "one line" and in_parentheses and rng.random() < 0.02:
+        if self.ends != "one line" and is_in_parentheses and rng.random() < 0.02:
             return f" {self.newline}  " if rng.random() < 0.7 else f" {self.comment()}"
         if self.gaps == "wild":
             space = rng.choice(("", " ", "  ", "\t", "\u00a0", ""))

@@ -313,11 +313,11 @@ class Run:
             self.motors(powers)
             self.wait(time, "MOVE")
 
-    def way(self, way: int, power: int, turns: bool) -> int:
+    def way(self, way: int, power: int, is_turn: bool) -> int:
         """Return the duration of a move by distance, in milliseconds."""
         if way <= 0:
             return 0
-        per_second = (self.kit.turn if turns else self.kit.speed) * power
+        per_second = (self.kit.turn if is_turn else self.kit.speed) * power
         if per_second == 0:
             raise Fault("NO_POWER")
         return fits(divide(100_000 * way, per_second))
@@ -326,10 +326,10 @@ class Run:
         """Keep a prepared move; its check begins after the instruction."""
         self.watched = Watched(powers, time, self.pc)
 
-    def until(self, stop: bool) -> None:
+    def until(self, is_stopped: bool) -> None:
         """Steps 1 to 3."""
         move = self.watched
-        if stop:
+        if is_stopped:
             if move.has_begun:
                 self.clock = self.now
                 if move.powers is not None:

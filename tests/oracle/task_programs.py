@@ -107,8 +107,8 @@ class TaskAuthor:
             power = power if rng.random() < 0.05 else power.replace("0", "5", power == "0")
         self.lines.append(f"{word}({time}, {power}){until}")
 
-    def until(self, chance: float) -> str:
-        return f" UNTIL({self.condition()})" if self.rng.random() < chance else ""
+    def until(self, probability: float) -> str:
+        return f" UNTIL({self.condition()})" if self.rng.random() < probability else ""
 
     def block(self, depth: int) -> None:
         rng = self.rng
@@ -200,11 +200,11 @@ class RivalAuthor(TaskAuthor):
         self.body(self.rng.randint(0, 1), 0)
         self.lines.append("END_WHEN")
 
-    def until(self, chance: float) -> str:
+    def until(self, probability: float) -> str:
         question = self.rng.choice(
             ("DISTANCE < 15", "LIGHT_L > 500", "DISTANCE < 8 AND LIGHT_L < 5")
         )
-        return f" UNTIL({question})" if self.rng.random() < 2 * chance else ""
+        return f" UNTIL({question})" if self.rng.random() < 2 * probability else ""
 
 
 def rival_program(rng: random.Random) -> tuple[str, dict[str, list[int]]]:

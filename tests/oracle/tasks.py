@@ -36,12 +36,12 @@ class Runner:
     clock: int = 0
     due: int | None = 0
     turns: Turns | None = None
-    waited: bool = False  # whether it has waited since its loop last restarted
+    has_waited: bool = False  # whether it has waited since its loop last restarted
     # The task's relation to the motors.
     m: Powers | None = None
-    moving: bool = False
+    is_moving: bool = False
     driving_until: int | None = None  # time at which its move ends
-    driving_forever: bool = False
+    drives_forever: bool = False
     insists: bool = False  # a WHEN, until a look finds FALSE
     robbed_at: int | None = None  # a higher task has taken the motors then
     was_stopped: bool = False  # an S has ended its move
@@ -50,7 +50,7 @@ class Runner:
     @property
     def wants(self) -> bool:
         """Return whether it wants the motors."""
-        return self.moving or self.m is not None or self.insists
+        return self.is_moving or self.m is not None or self.insists
 
     @property
     def is_interrupted(self) -> bool:
@@ -60,7 +60,7 @@ class Runner:
     @property
     def drives(self) -> bool:
         """Return whether its move turns the wheels."""
-        return self.driving_forever or self.driving_until is not None
+        return self.drives_forever or self.driving_until is not None
 
 
 @dataclass
@@ -73,7 +73,7 @@ class TaskRobot(Robot):
     wheels: Powers = (0, 0)
     is_first_round: bool = True  # whether this is the round after the main task's first turn
     is_slow: IsSlow = always_ready
-    every_ms: int = 1  # it resumes at multiples of this time
+    call_interval_ms: int = 1  # it resumes at multiples of this time
     was_slow: bool = False  # a reading was not ready in this round
 
     @property
@@ -117,7 +117,7 @@ class TaskRobot(Robot):
         """Goes on then; at the next possible time where a reading was not ready."""
         time = max(time, self.now + self.was_slow)
         self.was_slow = False
-        time += -time % self.every_ms
+        time += -time % self.call_interval_ms
         if time > self.max_time:
             self.now = self.max_time
             raise Ending("LIMIT")
@@ -189,19 +189,19 @@ class TaskRobot(Robot):
         me.clock += duration
         if duration > 0:
             me.due = me.clock
-            me.waited = True
+            me.has_waited = True
             yield
 
     def back_to_start(self) -> Turns:
         """Return to the start of a loop, which takes a millisecond if there are tasks."""
         me = self.who
         self.step()
-        if not me.waited and self.program.tasks:
+        if not me.has_waited and self.program.tasks:
             self.begin()
             me.clock += 1
             me.due = me.clock
             yield
-        me.waited = False
+        me.has_waited = False
 
     # -- the motors ---------------------------------------------------------------------------
 
@@ -219,12 +219,12 @@ class TaskRobot(Robot):
         loser = self.owner
         if loser is not None and loser is not self.who and loser.drives:
             if loser.driving_until is not None and loser.driving_until <= self.now:
-                loser.moving = False  # the move is over
+                loser.is_moving = False  # the move is over
                 loser.m = None
             else:
                 loser.due = None
             loser.robbed_at = self.now
-            loser.driving_until, loser.driving_forever = None, False  # the robot does not move
+            loser.driving_until, loser.drives_forever = None, False  # the robot does not move
         self.owner = self.who
 
     # -- statements ---------------------------------------------------------------------------
@@ -295,7 +295,7 @@ class TaskRobot(Robot):
         elif word in (*MOVES, "W", *ACTS, "M", "S"):
             values = self.values(statement)
             if word in MOVES:
-                yield from self.moving(statement, values)
+                yield from self.is_moving(statement, values)
             elif word == "W":
                 yield from self.waiting(statement, values[0])
             elif word in ACTS:
@@ -326,11 +326,11 @@ class TaskRobot(Robot):
         if owner is not None:
             owner.m = None
             if owner.drives:
-                owner.moving = False
+                owner.is_moving = False
                 owner.was_stopped = True
                 owner.due = self.now
                 # Its move has ended, so no other task can take the motors from it.
-                owner.driving_until, owner.driving_forever = None, False
+                owner.driving_until, owner.drives_forever = None, False
         if me.is_when:
             self.seize()
 
@@ -346,7 +346,7 @@ class TaskRobot(Robot):
                 self.who.clock = self.now
                 return
 
-    def moving(self, statement: Do, values: list[Value | None]) -> Turns:
+    def is_moving(self, statement: Do, values: list[Value | None]) -> Turns:
         me = self.who
         time_left = None if values[0] is None else max(0, values[0])
         power = nearest_in_range(nearest_whole(values[1] or 0), 0, 100)
@@ -357,11 +357,11 @@ class TaskRobot(Robot):
                 me.m = None
                 yield from self.standing()
             if (yield from self.looking(statement)):
-                me.moving = False
+                me.is_moving = False
                 return
             if self.is_outranked:
                 continue  # the motors were lost while it looked
-            me.m, me.moving, me.insists = None, True, me.is_when
+            me.m, me.is_moving, me.insists = None, True, me.is_when
             self.seize()
             self.motors(*powers)
             self.begin()
@@ -371,7 +371,7 @@ class TaskRobot(Robot):
                 me.was_stopped = False
                 me.clock = self.now
                 return
-            if me.robbed_at is None or not me.moving:
+            if me.robbed_at is None or not me.is_moving:
                 me.robbed_at = None
                 return
             if time_left is not None:
@@ -382,7 +382,7 @@ class TaskRobot(Robot):
     def standing(self) -> Turns:
         """Waits for the motors; when it has them, its clock is now."""
         me = self.who
-        me.moving, me.insists, me.waited = True, me.is_when, True
+        me.is_moving, me.insists, me.has_waited = True, me.is_when, True
         while self.owner is not me:
             me.due = None
             yield
@@ -391,7 +391,7 @@ class TaskRobot(Robot):
     def driving(self, statement: Do, time_left: int | None) -> Turns:
         """Drives until the time is over, UNTIL ends it, S ends it or the motors are taken."""
         me = self.who
-        me.driving_forever = time_left is None
+        me.drives_forever = time_left is None
         me.driving_until = None if time_left is None else me.clock + time_left
         while time_left is None or time_left > 0:
             pause = yield from self.pausing(statement, time_left)
@@ -403,7 +403,7 @@ class TaskRobot(Robot):
                 break
             if me.is_interrupted:
                 break
-        me.driving_until, me.driving_forever = None, False
+        me.driving_until, me.drives_forever = None, False
         if not me.was_stopped and me.robbed_at is None:
-            me.moving = False
+            me.is_moving = False
             self.motors(0, 0)

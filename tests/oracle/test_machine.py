@@ -47,14 +47,14 @@ def codes(seed: int, count: int) -> Iterator[tuple[bytes, int, dict[str, list[in
     rng = random.Random(seed)
     damaged_bytes = random_codes(seed, 10**9)
     for number in range(count):
-        which = number % 2
-        oracle_kit, kit = KITS[which]
+        kit_index = number % 2
+        oracle_kit, kit = KITS[kit_index]
         sizes = len(kit.readings), len(kit.actuators)
         if rng.random() < 0.5:
             code = compile_text(programs.program(rng, oracle_kit), kit).code
         else:
             code = next(code for code in damaged_bytes if python_verdict(code, *sizes) == (0, 0))
-        yield code, which, dict(programs.senses(rng, oracle_kit)), rng.randrange(1, 2**32)
+        yield code, kit_index, dict(programs.senses(rng, oracle_kit)), rng.randrange(1, 2**32)
 
 
 @pytest.mark.sampled("seed")

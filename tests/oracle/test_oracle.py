@@ -13,7 +13,9 @@ from tests.oracle.tasks import TaskRobot, Turns
 from tests.oracle.words import RANGES
 
 
-def test_random_programs(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_random_programs_are_valid_and_use_every_instruction(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     """Are valid, and together do every instruction and end in every way."""
     used_words: set[str] = set()
 

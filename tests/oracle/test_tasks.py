@@ -23,7 +23,7 @@ BATCH_SIZE = 50
 
 @pytest.mark.sampled("first", keep=3)
 @pytest.mark.parametrize("first", range(0, 400, BATCH_SIZE))
-def test_random_programs(first: int) -> None:
+def test_random_programs_agree(first: int) -> None:
     end_counts = Counter(compare_task_program(seed) for seed in range(first, first + BATCH_SIZE))
     assert set(end_counts) == {"DONE", "LIMIT"}
 

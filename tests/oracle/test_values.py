@@ -53,7 +53,7 @@ def check_program(seed: int, machines: Sequence[Machine] = (run_python,)) -> str
 
 @pytest.mark.sampled("first", keep=3)
 @pytest.mark.parametrize("first", range(0, 400, BATCH_SIZE))
-def test_random_programs(first: int) -> None:
+def test_random_programs_agree(first: int) -> None:
     end_counts = Counter(check_program(seed) for seed in range(first, first + BATCH_SIZE))
     assert {"DONE", "LIMIT"} <= set(end_counts), end_counts
 

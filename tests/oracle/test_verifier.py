@@ -49,13 +49,17 @@ def compare(codes: Iterable[bytes], sensors: int = SENSORS, actuators: int = ACT
         for needs, verdict in zip((0xFF, 0), verdicts, strict=True):
             if not needs and verdict == verdicts[0]:
                 continue
-            ours = python_verdict(code, sensors, actuators, needs)
-            assert ours == verdict, f"{code.hex(' ')}: Python says {ours}, the page {verdict}"
+            python_result = python_verdict(code, sensors, actuators, needs)
+            assert python_result == verdict, (
+                f"{code.hex(' ')}: Python says {python_result}, the page {verdict}"
+            )
     if not missing():
         cpp_verdicts = host().verdicts(codes, sensors, actuators)
         for code, verdict, (rule, offset) in zip(codes, without, cpp_verdicts, strict=True):
-            ours = rule, offset if rule else 0  # for accepted code, the offset is its length
-            assert ours == verdict, f"{code.hex(' ')}: C++ says {ours}, the page {verdict}"
+            cpp_result = rule, offset if rule else 0  # the offset of accepted code is its length
+            assert cpp_result == verdict, (
+                f"{code.hex(' ')}: C++ says {cpp_result}, the page {verdict}"
+            )
     return {rule for rule, _ in own_verdicts}
 
 

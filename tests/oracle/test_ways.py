@@ -60,12 +60,12 @@ def check_program(seed: int, machines: Sequence[Machine] = (run_python,)) -> str
 
 @pytest.mark.sampled("first")
 @pytest.mark.parametrize("first", range(0, 4 * BATCH_SIZE, BATCH_SIZE))
-def test_random_programs(first: int) -> None:
+def test_random_programs_agree(first: int) -> None:
     end_counts = Counter(check_program(seed) for seed in range(first, first + BATCH_SIZE))
     assert {"DONE", "FAULT NO_POWER", "FAULT OVERFLOW"} <= set(end_counts), end_counts
 
 
-def test_random_programs_with_tasks() -> None:
+def test_random_programs_with_tasks_agree() -> None:
     seeds = range(4 * BATCH_SIZE, 5 * BATCH_SIZE)  # two of them go without power
     end_counts = Counter(compare_task_program(seed, needs=GO) for seed in seeds)
     assert {"DONE", "LIMIT", "NO_POWER"} <= set(end_counts), end_counts

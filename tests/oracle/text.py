@@ -226,9 +226,9 @@ class Parser(ExpressionParser):
         if word == "WHILE":
             condition = self.condition()
         else:
-            (count,) = self.arguments(1, forever=True)
-            self.want_number(count)
-            self.want_stack((count,))
+            (count,) = self.arguments(1, may_be_forever=True)
+            self.require_number(count)
+            self.require_stack((count,))
         self.blocks += 1
         self.loops += 1
         body = self.inner_block(f"END_{word}")
@@ -246,8 +246,8 @@ class Parser(ExpressionParser):
         if unit and not self.speeds[unit]:
             self.fail(f"how fast the robot is with {unit} is not known")
         for argument, (low, high) in zip(arguments, ranges, strict=True):
-            self.want_number(argument)
-            self.want_range(argument, low, high)
+            self.require_number(argument)
+            self.require_range(argument, low, high)
         until: Expression | None = None
         if may_until and self.accept("UNTIL"):
             until = self.condition()
@@ -276,10 +276,10 @@ class Parser(ExpressionParser):
             device = self.actuators[name]
             (argument,) = self.arguments(1)
             if device.is_yes_no:
-                self.want_yes_no(argument)
+                self.require_yes_no(argument)
             else:
-                self.want_number(argument)
-                self.want_range(argument, device.low, device.high)
+                self.require_number(argument)
+                self.require_range(argument, device.low, device.high)
             return self.check_stack(Do("SET", name, (argument,)))
         if name in self.sensors:
             return Do("READ", name)
@@ -301,7 +301,7 @@ class Parser(ExpressionParser):
 
     def check_stack(self, statement: Do) -> Do:
         """Return the instruction if the stack holds its values."""
-        self.want_stack(statement.arguments)
+        self.require_stack(statement.arguments)
         return statement
 
     # Arguments

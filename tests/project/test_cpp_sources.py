@@ -127,8 +127,8 @@ ASSEMBLY_WITH_TWIN = [
 @each_row("path", ASSEMBLY_WITH_TWIN)
 def test_assembly_functions_exist_in_the_named_cpp_files(path: Path) -> None:
     """Its first lines name the files for the other chips, and each function exists there."""
-    about = first_comment(path)
-    (same,) = re.findall(r"[Mm]eans? the same as (.*?)[.] [A-Z`]", about)
+    comment = first_comment(path)
+    (same,) = re.findall(r"[Mm]eans? the same as (.*?)[.] [A-Z`]", comment)
     twins = [path.parent / name for name in re.findall(r"`([\w/]+\.(?:cpp|h))`", same)]
     twins += [twin for row in twins if (twin := VM / row.name).exists()]
     code = "\n".join(code_of(twin) for twin in twins if twin.exists())
@@ -146,8 +146,8 @@ ESSENTIAL_ASSEMBLY = {"execute_avr.S", "number_avr.S"}
 
 @each_row("path", [path for path in ASSEMBLY_WITH_TWIN if path.name not in ESSENTIAL_ASSEMBLY])
 def test_assembly_files_state_their_savings_and_removal_condition(path: Path) -> None:
-    about = first_comment(path)
-    assert re.search(r"\d+ (bytes|cycles)", about) and "lets it go" in about
+    comment = first_comment(path)
+    assert re.search(r"\d+ (bytes|cycles)", comment) and "lets it go" in comment
 
 
 @each_row("path", BOARDS)
@@ -186,8 +186,8 @@ def test_functions_placed_by_the_linker_exist_by_name() -> None:
         places = [code]
         if outer:
             kind = outer[0]
-            begun_text = rf"(?:class|struct) {kind}\b[^;{{]*\{{.*?\n\}};|\b{kind}::[^;]*?\("
-            places = re.findall(begun_text, code, re.DOTALL)
+            class_start = rf"(?:class|struct) {kind}\b[^;{{]*\{{.*?\n\}};|\b{kind}::[^;]*?\("
+            places = re.findall(class_start, code, re.DOTALL)
         assert any(re.search(rf"\b{name}\b", place) for place in places), symbol
 
 

@@ -36,16 +36,16 @@ def commands() -> list[Command]:
     shows."""
     command_list: list[Command] = []
     for document in DOCUMENTS:
-        fence, collecting = "", False
+        fence, is_our_command = "", False
         for number, row in enumerate(document.read_text(encoding="utf-8").splitlines(), 1):
             if row.startswith("```"):
-                fence, collecting = ("" if fence else row[3:].strip() or "text"), False
+                fence, is_our_command = ("" if fence else row[3:].strip() or "text"), False
             elif fence == "console" and row.startswith("$ "):
                 words = shlex.split(row[2:])
-                collecting = words[0] in ("tsc", "tiniscript")
-                if collecting:
+                is_our_command = words[0] in ("tsc", "tiniscript")
+                if is_our_command:
                     command_list.append(Command(document, number, words[1:], ""))
-            elif collecting:
+            elif is_our_command:
                 command_list[-1] = command_list[-1]._replace(
                     shown=command_list[-1].shown + row + "\n"
                 )
@@ -60,7 +60,11 @@ def test_every_readme_links_to_the_others(language: str, name: str) -> None:
 
 @each_row(
     "language, name, others",
-    [(value, name, of.sources) for of in documents(ROOT) for value, name in of.sources.items()],
+    [
+        (value, name, document.sources)
+        for document in documents(ROOT)
+        for value, name in document.sources.items()
+    ],
 )
 def test_a_document_links_to_all_its_translations_or_none(
     language: str, name: str, others: dict[str, str]
@@ -96,7 +100,7 @@ EXAMPLES = [
 
 
 @pytest.mark.parametrize("example", EXAMPLES, ids=lambda value: f"{value.path.name}:{value.line}")
-def test_python(
+def test_python_examples_are_right(
     example: Example, request: pytest.FixtureRequest, capsys: pytest.CaptureFixture[str],
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
 ) -> None:  # fmt: skip
@@ -127,9 +131,9 @@ def test_links_have_existing_targets(document: Path) -> None:
 
 
 TRANSLATED_DOCUMENTS = [
-    (language, name, of.sources["en"])
-    for of in documents(ROOT)
-    for language, name in of.sources.items()
+    (language, name, document.sources["en"])
+    for document in documents(ROOT)
+    for language, name in document.sources.items()
     if language != "en"
 ]
 

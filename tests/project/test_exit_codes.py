@@ -64,16 +64,16 @@ def run_script(clone: Path, words: list[str], fails: str, ci: str) -> tuple[int,
 
 @needs_sh
 @pytest.mark.parametrize(
-    ("words", "least"),
+    ("words", "min_step_count"),
     [(["tools/test.sh"], 10), (["tools/test.sh", "--quick"], 6), (["tools/try.sh"], 2)],
     ids=["test.sh", "test.sh --quick", "try.sh"],
 )
 def test_a_script_fails_if_one_of_its_steps_fails(
-    words: list[str], least: int, tmp_path: Path
+    words: list[str], min_step_count: int, tmp_path: Path
 ) -> None:
     clone = folder_of(tmp_path, "venv.sh", "test.sh", "try.sh")
     code, steps = run_script(clone, words, "", "true")
-    assert code == 0 and len(steps) >= least, steps
+    assert code == 0 and len(steps) >= min_step_count, steps
     for step in dict.fromkeys(steps):
         if not step.startswith(LOOKS):
             code, _ = run_script(clone, words, step, "true")
@@ -123,11 +123,11 @@ def test_the_tests_report_their_processor_time(tmp_path: Path) -> None:
     for name in ("steps", "fails"):
         (clone / name).write_text("")
     usual = os.environ["PATH"]
-    much = tmp_path / "much" / "awk"  # a fake awk with a larger count
-    much.parent.mkdir()
-    much.write_text("#!/bin/sh\necho 24.0\n")
-    much.chmod(0o755)
-    with_much = f"{much.parent}{os.pathsep}{usual}"
+    fake_awk = tmp_path / "much" / "awk"  # a fake awk with a larger count
+    fake_awk.parent.mkdir()
+    fake_awk.write_text("#!/bin/sh\necho 24.0\n")
+    fake_awk.chmod(0o755)
+    with_much = f"{fake_awk.parent}{os.pathsep}{usual}"
     for path, ci, minutes in (
         (usual, "true", "0.0"),
         (with_much, "", "24.0"),
@@ -212,7 +212,9 @@ class Stage:
         )
         monkeypatch.setattr(release, "tag", lambda root, version: self.step("tag"))
         monkeypatch.setattr(
-            Clone, "python", lambda clone, *words, **how: self.step(f"twine {Path(words[-1]).name}")
+            Clone,
+            "python",
+            lambda clone, *words, **options: self.step(f"twine {Path(words[-1]).name}"),
         )
         for name in PARTS:
             monkeypatch.setitem(PARTS, name, PARTS[name]._replace(make=partial(self.make, name)))

@@ -119,8 +119,8 @@ def test_the_firmware_is_measured_at_each_baud(
     breaks = False
     monkeypatch.setattr(link, "build", lambda baud, folder: folder / str(baud))
     monkeypatch.setattr(uno, "missing", lambda: "")
-    for most, code in ((2000.0, 0), (100.0, 1)):
-        baud = link.on_each_baud(measure, lambda its, _: max(its.values()) <= most)  # noqa: B023
+    for limit, code in ((2000.0, 0), (100.0, 1)):
+        baud = link.on_each_baud(measure, lambda its, _: max(its.values()) <= limit)  # noqa: B023
         assert baud == code
     breaks = True
     assert link.on_each_baud(measure, lambda *_: True) == 2

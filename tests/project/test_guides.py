@@ -95,7 +95,7 @@ def mask_output(text: str) -> str:
 @pytest.fixture
 def pty_robot(monkeypatch: pytest.MonkeyPatch) -> Iterator[PtyRobot]:
     with PtyRobot(robots.load("tinibot").kit, bytes_per_ms=1) as robot:
-        robot.ask(lambda robot: robot.sense(LIGHT, LIGHT, DISTANCE))
+        robot.ask(lambda robot: robot.set_readings(LIGHT, LIGHT, DISTANCE))
         yield robot
 
 
@@ -127,13 +127,13 @@ def test_commands_of_a_guide_print_the_shown_output(
     assert len(printed) >= 10
     if request.config.getoption("--accept"):
         # It starts from the end, so that earlier rows keep their places.
-        for step, said_now in reversed(printed):
-            if mask_output(step.text) != mask_output(said_now):
-                rows[step.first : step.last] = [row for row in said_now.splitlines() if row]
+        for step, current_text in reversed(printed):
+            if mask_output(step.text) != mask_output(current_text):
+                rows[step.first : step.last] = [row for row in current_text.splitlines() if row]
         guide.write_text("\n".join(rows) + "\n", encoding="utf-8")
         return
-    for step, said_now in printed:
-        assert mask_output(said_now) == mask_output(step.text), f"{guide.name}:{step.first}"
+    for step, current_text in printed:
+        assert mask_output(current_text) == mask_output(step.text), f"{guide.name}:{step.first}"
 
 
 # -- the guides' claims about tsc

@@ -58,8 +58,8 @@ def repo(tmp_path_factory: pytest.TempPathFactory) -> Path:
         need("setuptools is older than 77")
     folder = tmp_path_factory.mktemp("package") / "repo"
     shutil.copytree(ROOT, folder, ignore=shutil.ignore_patterns(*SKIPPED_NAMES))
-    about = folder / "pyproject.toml"
-    about.write_text(facts.with_address(about.read_text("utf-8"), URL), encoding="utf-8")
+    pyproject = folder / "pyproject.toml"
+    pyproject.write_text(facts.with_address(pyproject.read_text("utf-8"), URL), encoding="utf-8")
     return folder
 
 
@@ -69,9 +69,9 @@ def repo_files(repo: Path) -> set[str]:
     return files_of(repo)
 
 
-def build_package(repo: Path, what: str, target: Path) -> Path:
+def build_package(repo: Path, package_kind: str, target: Path) -> Path:
     completed = subprocess.run(
-        [sys.executable, "-c", BUILD_CODE.format(what), str(target)],
+        [sys.executable, "-c", BUILD_CODE.format(package_kind), str(target)],
         cwd=repo, capture_output=True, text=True, check=False,
         env={**os.environ, "SOURCE_DATE_EPOCH": EPOCH},
     )  # fmt: skip
@@ -156,9 +156,9 @@ def test_a_wheel_contains_the_repositorys_files_and_nothing_stale(
 def test_a_wheel_states_its_licence_and_its_description_has_absolute_links(
     wheel: Path, repo: Path
 ) -> None:
-    (about,) = wheel.glob("*.dist-info")
-    assert (about / "licenses" / "LICENSE").read_text() == (ROOT / "LICENSE").read_text()
-    text = (about / "METADATA").read_text(encoding="utf-8")
+    (metadata_folder,) = wheel.glob("*.dist-info")
+    assert (metadata_folder / "licenses" / "LICENSE").read_text() == (ROOT / "LICENSE").read_text()
+    text = (metadata_folder / "METADATA").read_text(encoding="utf-8")
     head, _, shown_text = text.partition("\n\n")
     for row in (
         "License-Expression: MIT",
@@ -306,9 +306,13 @@ def test_a_registry_accepts_both_packages(wheel: Path, source_folder: Path) -> N
 @pytest.mark.sampled(of="source packages")
 def test_the_tests_of_a_source_package_run(source_folder: Path) -> None:
     pytest_here = ("-m", "pytest", "-p", "no:cacheprovider")
-    every = python("-c", IMPORT_ALL_CODE, folder=source_folder, PYTHONPATH=f"compiler{os.pathsep}.")
-    assert every.returncode == 0, every.stderr[-3000:]
-    some = ("tests/bytecode/test_image.py", "tests/robots/test_robots.py")
-    alone = {"PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"}
-    completed = python(*pytest_here, "-m", "not root", *some, folder=source_folder, **alone)
+    completed = python(
+        "-c", IMPORT_ALL_CODE, folder=source_folder, PYTHONPATH=f"compiler{os.pathsep}."
+    )
+    assert completed.returncode == 0, completed.stderr[-3000:]
+    test_files = ("tests/bytecode/test_image.py", "tests/robots/test_robots.py")
+    without_plugins = {"PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"}
+    completed = python(
+        *pytest_here, "-m", "not root", *test_files, folder=source_folder, **without_plugins
+    )
     assert completed.returncode == 0, completed.stdout[-3000:]

@@ -69,10 +69,10 @@ def test_the_pdf_is_complete(language: str) -> None:
     length = int(re.search(rb"/Length (\d+)", data)[1])  # type: ignore[index]
     stream_start = data.index(b"stream\n") + 7
     assert data[stream_start + length :].startswith(b"\nendstream")
-    wanted_texts = [paper._pdf_text(line.text) for line in lines_of(language)]
+    expected_texts = [paper._pdf_text(line.text) for line in lines_of(language)]
     assert (
         re.findall(r"(\(.*\)) Tj ET", data[stream_start : stream_start + length].decode())
-        == wanted_texts
+        == expected_texts
     )
 
 

@@ -33,7 +33,7 @@ def test_names_in_quoted_scripts_exist() -> None:
     rows = [row for row in list_quoted_texts() if QUOTED_IMPORT.search(row[1])]
     assert len(rows) > 20
 
-    def names_what_is_there(row: tuple[str, str]) -> None:
+    def check_imported_names_exist(row: tuple[str, str]) -> None:
         for module_name, imported_modules in QUOTED_IMPORT.findall(row[1]):
             module = import_module(module_name)
             for name, alias in ALIAS.findall(imported_modules):
@@ -45,7 +45,7 @@ def test_names_in_quoted_scripts_exist() -> None:
                 for attribute in re.findall(rf"(?<![\w.]){alias or name}\.(\w+)", row[1]):
                     assert hasattr(owner, attribute), f"{name}.{attribute}"
 
-    go_through(names_what_is_there, rows, lambda row: row[0])
+    go_through(check_imported_names_exist, rows, lambda row: row[0])
 
 
 def test_dotted_names_exist() -> None:

@@ -289,7 +289,7 @@ def test_a_debian_without_any_python_gets_one(has_apt: bool, code: int, tmp_path
 
 
 @pytest.mark.parametrize(
-    ("sudo", "locale", "english"),
+    ("sudo", "locale", "is_english"),
     [
         ({}, "C", True),
         ({"sudo": "exit 1"}, "es_MX.UTF-8", False),
@@ -298,13 +298,13 @@ def test_a_debian_without_any_python_gets_one(has_apt: bool, code: int, tmp_path
     ids=["no sudo", "no rights", "no network"],
 )
 def test_users_who_cannot_install_venv_are_not_told_to(
-    sudo: dict[str, str], locale: str, english: bool, tmp_path: Path
+    sudo: dict[str, str], locale: str, is_english: bool, tmp_path: Path
 ) -> None:
     fakes = {"python3": "case $* in *ensurepip*) exit 1;; esac", "apt-get": "exit 100", **sudo}
     completed = run_script(tmp_path, fakes, LANG=locale)
     assert completed.returncode == 2
-    assert ("Who administers" in completed.stderr) == english
-    assert ("Quien administra" in completed.stderr) != english
+    assert ("Who administers" in completed.stderr) == is_english
+    assert ("Quien administra" in completed.stderr) != is_english
     assert "sudo" not in completed.stderr
 
 

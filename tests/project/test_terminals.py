@@ -50,13 +50,13 @@ def play_conversation(lines: list[str], language: str) -> list[str]:
     for k, line in enumerate(lines):
         if line.startswith(ANSWER_PREFIX):
             continue
-        wanted_count = next(
+        expected_count = next(
             (n for n, line in enumerate(lines[k + 1 :]) if not line.startswith(ANSWER_PREFIX)),
             len(lines) - k - 1,
         )
         data = robot.step(robot.now_ms + 1, line.encode() + b"\r\n")
         end_ms = robot.now_ms + LONGEST_MS
-        while data.count(b"\n") < wanted_count and robot.now_ms < end_ms:
+        while data.count(b"\n") < expected_count and robot.now_ms < end_ms:
             data += robot.step(robot.now_ms + 1)
         data += robot.step(robot.now_ms + SILENCE_MS)
         transcript += [line, *data.decode().splitlines()]

@@ -40,22 +40,24 @@ def stick(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def wheel_of(distribution: Distribution, folder: Path) -> None:
+def make_wheel(distribution: Distribution, folder: Path) -> None:
     """Make a wheel of an installed distribution."""
     name = re.sub(r"[-.]+", "_", distribution.metadata["Name"])
     tag = re.findall(r"(?m)^Tag: (\S+)$", distribution.read_text("WHEEL") or "")[-1]
     rows = []
     with zipfile.ZipFile(folder / f"{name}-{distribution.version}-{tag}.whl", "w") as wheel:
         for file in distribution.files or ():
-            inside = file.as_posix()
-            if ".." in inside or inside.endswith((".pyc", "RECORD", "INSTALLER", "REQUESTED")):
+            member_name = file.as_posix()
+            if ".." in member_name or member_name.endswith(
+                (".pyc", "RECORD", "INSTALLER", "REQUESTED")
+            ):
                 continue
             data = Path(str(file.locate())).read_bytes()
-            wheel.writestr(inside, data)
+            wheel.writestr(member_name, data)
             digest = base64.urlsafe_b64encode(hashlib.sha256(data).digest()).rstrip(b"=").decode()
-            rows.append(f"{inside},sha256={digest},{len(data)}\n")
-            if inside.endswith(".dist-info/METADATA"):
-                record = inside.replace("METADATA", "RECORD")
+            rows.append(f"{member_name},sha256={digest},{len(data)}\n")
+            if member_name.endswith(".dist-info/METADATA"):
+                record = member_name.replace("METADATA", "RECORD")
         wheel.writestr(record, "".join([*rows, f"{record},,\n"]))
 
 
@@ -66,11 +68,11 @@ def list_installed(root: str, extras: set[str]) -> dict[str, Distribution]:
     distributions: dict[str, Distribution] = {}
     waiting = [(root, extras)]
     while waiting:
-        name, wanted_names = waiting.pop()
+        name, expected_names = waiting.pop()
         package = distribution(name)
         for text in package.requires or ():
             need = Requirement(text)
-            environments = [{"extra": extra} for extra in wanted_names] or [{"extra": ""}]
+            environments = [{"extra": extra} for extra in expected_names] or [{"extra": ""}]
             if need.marker and not any(
                 need.marker.evaluate(environment) for environment in environments
             ):
@@ -89,7 +91,7 @@ def test_the_stick_installs_offline(stick: Path, tmp_path: Path) -> None:
     wheels = stick / "wheels"
     wheels.mkdir()
     for installed_one in list_installed("tiniscript", {"radio", "virtual"}).values():
-        wheel_of(installed_one, wheels)
+        make_wheel(installed_one, wheels)
     copy = tmp_path / "copy"  # a build leaves folders
     copy.mkdir()
     for name in ("compiler", "vm_arduino", "pyproject.toml", "setup.py", "README.md", "LICENSE"):
@@ -166,9 +168,9 @@ def test_every_link_of_the_pages_has_a_target(stick: Path) -> None:
                 assert f'id="{unquote(anchor[1:])}"' in target_text, f"{page.name}: {path}{anchor}"
             count += 1
     assert count > 300
-    for lesson in range(1, 15):
+    for lesson_number in range(1, 15):
         for kind in ("en", "es", "teacher.en", "teacher.es"):
-            assert (pages / "lessons" / f"{lesson:02}.{kind}.html").is_file()
+            assert (pages / "lessons" / f"{lesson_number:02}.{kind}.html").is_file()
 
 
 def test_each_system_has_its_script_with_its_line_ends(stick: Path) -> None:
@@ -257,7 +259,7 @@ def test_a_phone_shows_each_teacher_page_completely(stick: Path) -> None:
         .filter(each => each.scrollWidth > each.clientWidth + 1).length"""
     wide = "document.documentElement.scrollWidth > window.innerWidth"
     slides = "getComputedStyle(document.querySelector('.slide')).display"
-    with studio.driver(of_studio=False) as driver, studio.browser(driver) as browser:
+    with studio.driver(needs_studio=False) as driver, studio.browser(driver) as browser:
         phone = browser.new_page(viewport={"width": 390, "height": 844})
         sizes = {}
         for page in pages:
@@ -306,13 +308,13 @@ def test_markers_are_those_of_the_target(tmp_path: Path) -> None:
         wheel(tmp_path, name)
     needs = ["only_windows; sys_platform == 'win32'", "only_old; python_version < '3.11'"]
     own_wheel = wheel(tmp_path, "robot", needs)
-    for system, python, wanted_names in (
+    for system, python, expected_names in (
         ("windows", "3.10", {"only_windows", "only_old"}),
         ("windows", "3.12", {"only_windows"}),
         ("mac-apple", "3.10", {"only_old"}),
     ):
         names = fetch_packages(tmp_path, tmp_path / f"{system}{python}", system, python, own_wheel)
-        assert {name.split("-")[0] for name in names} == {"robot", *wanted_names}
+        assert {name.split("-")[0] for name in names} == {"robot", *expected_names}
 
 
 def test_linux_gets_the_wheel_with_the_parts_in_c(tmp_path: Path) -> None:

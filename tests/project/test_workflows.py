@@ -96,7 +96,7 @@ def test_the_visitors_commands_are_those_of_the_readme() -> None:
 
 
 def test_commands_run_by_a_workflow_exist() -> None:
-    about = (ROOT / "pyproject.toml").read_text(encoding="utf-8")
+    pyproject_text = (ROOT / "pyproject.toml").read_text(encoding="utf-8")
     count = 0
     for words in commands():
         assert words[0] in THEIRS, words
@@ -110,7 +110,7 @@ def test_commands_run_by_a_workflow_exist() -> None:
             count += 1
         for extras in re.findall(r"\[([a-z,]+)\]", " ".join(words)):
             for extra in extras.split(","):
-                assert f"\n{extra} = [" in about, extra
+                assert f"\n{extra} = [" in pyproject_text, extra
     assert count >= 6
 
 

@@ -71,7 +71,7 @@ def add(added: Sequence[str], programs: Sequence[str]) -> None:
     if (
         not added
         or not written_match
-        or written_match[3] != _name_of_all([it for it in programs if it not in added])
+        or written_match[3] != _name_of_all([entry for entry in programs if entry not in added])
     ):
         return  # entries were added or removed
     rows += map(_row, added)

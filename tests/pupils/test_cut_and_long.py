@@ -53,5 +53,5 @@ def test_all_cut_programs_end() -> None:
 )
 def test_a_long_line_is_read_once(program: str) -> None:
     assert any(diagnostic.is_mistake for diagnostic in check(program))
-    most = MOST_CALLS if len(program) > MOST_CHARACTERS else MOST_CALLS_WHOLE
-    assert calls_of_check(program) < most * len(program)
+    max_calls_per_character = MOST_CALLS if len(program) > MOST_CHARACTERS else MOST_CALLS_WHOLE
+    assert calls_of_check(program) < max_calls_per_character * len(program)

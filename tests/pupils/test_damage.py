@@ -29,18 +29,18 @@ INSERTED_TEXTS = [
 
 def damage_program(seed: int) -> str:
     """Return a right program with one to three slips."""
-    chance = random.Random(seed)
-    text = chance.choice(programs())
-    for _ in range(chance.randint(1, 3)):
-        k = chance.randrange(len(text) + 1)
-        what = chance.randrange(5)
-        if what == 0:
+    rng = random.Random(seed)
+    text = rng.choice(programs())
+    for _ in range(rng.randint(1, 3)):
+        k = rng.randrange(len(text) + 1)
+        damage_kind = rng.randrange(5)
+        if damage_kind == 0:
             text = text[:k] + text[k + 1 :]
-        elif what == 1:
-            text = text[:k] + chance.choice(INSERTED_TEXTS) + text[k:]
-        elif what == 2:
-            text = text[:k] + chance.choice(INSERTED_TEXTS) + text[k + 1 :]
-        elif what == 3:
+        elif damage_kind == 1:
+            text = text[:k] + rng.choice(INSERTED_TEXTS) + text[k:]
+        elif damage_kind == 2:
+            text = text[:k] + rng.choice(INSERTED_TEXTS) + text[k + 1 :]
+        elif damage_kind == 3:
             text = text[:k] + text[k + 1 : k + 2] + text[k : k + 1] + text[k + 2 :]
         else:
             end = text.find("\n", k) + 1 or len(text)
@@ -62,8 +62,8 @@ def test_a_damaged_program_is_repaired_or_left(seed: int) -> None:
     assert repair_program(repaired_program.text, check).text == repaired_program.text
     for diagnostic in diagnostics[:20]:  # each alone
         edits = edits_of(diagnostic)
-        alone = repair_program(text, partial(_only_for_text, text, diagnostic))
-        if alone.text != text and diagnostic.code not in OTHER_NUMBERS:
+        repair_alone = repair_program(text, partial(_only_for_text, text, diagnostic))
+        if repair_alone.text != text and diagnostic.code not in OTHER_NUMBERS:
             assert edits and digits(text) == digits(apply_edits(text, edits))
 
 

@@ -83,9 +83,9 @@ def codes_with_wrong_offers(text: str) -> list[str]:
     diagnostics = [diagnostic for diagnostic in check(text) if diagnostic.is_mistake]
     together: list[Edit] = []
     for diagnostic in diagnostics:
-        its = edits_of(diagnostic) or []
-        together += its if not edits_overlap(its, together) else []
-    bad = []
+        edits = edits_of(diagnostic) or []
+        together += edits if not edits_overlap(edits, together) else []
+    wrong_codes = []
     for diagnostic in diagnostics:
         other_diagnostics = [
             other_diagnostic
@@ -104,8 +104,8 @@ def codes_with_wrong_offers(text: str) -> list[str]:
             find_wrong_codes(diagnostic, text, edits, other_codes, other_words)
             for edits in tried_edits
         ):
-            bad.append(diagnostic.code.number)
-    return bad
+            wrong_codes.append(diagnostic.code.number)
+    return wrong_codes
 
 
 def test_repairs_offered_for_the_corpus_compile(
@@ -114,8 +114,13 @@ def test_repairs_offered_for_the_corpus_compile(
     texts = [entry.program for entry in programs]
     offers = sum(bool(ways(diagnostic, text)) for text in texts[-60:] for diagnostic in check(text))
     assert offers > 50
-    bad = {text: codes for text in texts if (codes := codes_with_wrong_offers(text))}
-    assert not bad, f"{len(bad)} of {len(texts)}, the first: {next(iter(bad.items()))}"
+    wrong_codes_by_text = {
+        text: codes for text in texts if (codes := codes_with_wrong_offers(text))
+    }
+    assert not wrong_codes_by_text, (
+        f"{len(wrong_codes_by_text)} of {len(texts)}, the first: "
+        f"{next(iter(wrong_codes_by_text.items()))}"
+    )
 
 
 @each_row("text", ["SI|WAIT UNTIL BUTTON", "SI|W UNTIL BUTTON", "BREIK", "EXIT", "F(FOREVR, 60)"])

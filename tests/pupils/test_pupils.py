@@ -67,10 +67,12 @@ def test_programs_are_rechosen_when_the_corpus_has_changed() -> None:
     assert why_stale(head_before, head(1, 1, ["S", "B"])) == "programs have come or gone"
     count = forks(["if a and b:\n    [c for c in d if c]\n"])
     assert count == 3
-    little, much = (head_before.replace(" forks", f"{extra} forks") for extra in ("", "0"))
+    small_head, large_head = (
+        head_before.replace(" forks", f"{extra} forks") for extra in ("", "0")
+    )
     assert (
-        why_stale(head_before, little) == ""
-        and why_stale(head_before, much) == "the code has other branches"
+        why_stale(head_before, small_head) == ""
+        and why_stale(head_before, large_head) == "the code has other branches"
     )
 
 
@@ -110,9 +112,9 @@ def test_the_corpus_is_unchanged(
         add(new_programs, [entry.program for entry in programs])
         return
     changed_entries = [
-        (old, new_programs)
-        for old, new_programs in zip(programs, entries, strict=True)
-        if old != new_programs
+        (old_program, new_programs)
+        for old_program, new_programs in zip(programs, entries, strict=True)
+        if old_program != new_programs
     ]
     assert not changed_entries, (
         f"{len(changed_entries)} of {len(entries)}, the first: {changed_entries[0]}"
@@ -175,8 +177,8 @@ def test_suggested_texts_are_offered_as_repairs(programs: tuple[Entry, ...]) -> 
 
 def check_offer(entry: Entry) -> None:
     diagnostics, text = check(entry.program), entry.program
-    for which, diagnostic in enumerate(diagnostics):
-        edits = edits_offered(text, diagnostics, which, check)
+    for index, diagnostic in enumerate(diagnostics):
+        edits = edits_offered(text, diagnostics, index, check)
         names_one = any(
             diagnostic.values.get(gap) for gap in TEXT_ONLY_GAPS.get(diagnostic.code, ())
         )

@@ -37,9 +37,9 @@ VALUES = (("2, 60", ["F", "B"]), ("1, 440", ["BEEP"]), ("-30, 40", ["M"]), ("2",
 def test_si_before_verbal_commands_is_not_a_condition(head: str, words: str) -> None:
     for text in (f"{head} {words}", f"{head}, {words}", f"{head} {words}\nS", f"{head} {words};"):
         diagnostic = check(text)[0]
-        begun_text = "SB" if head == "SB" else "SI"
+        start_word = "SB" if head == "SB" else "SI"
         assert diagnostic.code.number == "TS036", text
-        assert diagnostic.values["fix"] == f"{begun_text}|{ORDERS[words]}", text
+        assert diagnostic.values["fix"] == f"{start_word}|{ORDERS[words]}", text
 
 
 @pytest.mark.parametrize(
@@ -72,12 +72,12 @@ def test_named_symbols_are_replaced_by_the_symbols(signs: tuple[str, ...]) -> No
 def test_a_typed_variable_before_si_is_moved_after_it(kind: str, head: str) -> None:
     for end, note, declaration in product((";", ""), ("", " // fast"), ("", "int t = 2\n")):
         wrong_text = f"{kind}vel = 70{end}{note}\n{declaration}{head}F(2, vel)"
-        begun_text = "".join(head.split()).upper()
-        right_text = f"{begun_text}vel = 70{end}{note}\n{declaration.replace('int ', '')}F(2, vel)"
+        start_word = "".join(head.split()).upper()
+        right_text = f"{start_word}vel = 70{end}{note}\n{declaration.replace('int ', '')}F(2, vel)"
         assert (
             apply_edits(
                 wrong_text,
-                [it for diagnostic in check(wrong_text) for it in edits_of(diagnostic) or []],
+                [name for diagnostic in check(wrong_text) for name in edits_of(diagnostic) or []],
             )
             == right_text
         )
@@ -94,7 +94,9 @@ def test_values_without_a_word_get_a_matching_word(
     text = place.format(f"({values})")
     (diagnostic,) = [diagnostic for diagnostic in check(text) if diagnostic.is_mistake]
     offered_texts = [diagnostic.values["one"], diagnostic.values.get("another")]
-    assert [it for it in offered_texts if it] == [f"{word}({values})" for word in words], text
+    assert [offered_text for offered_text in offered_texts if offered_text] == [
+        f"{word}({values})" for word in words
+    ], text
     for language in ("en", "es", "pt"):
         full_message = message(diagnostic, Source(text), language)
         assert f"({values})" in full_message.message and ("SB|" in full_message.message) is (
@@ -113,11 +115,11 @@ BUTTONS = (
 @pytest.mark.parametrize("words", ORDERS)
 @pytest.mark.parametrize("head", STARTS + BUTTONS)
 def test_words_determine_how_a_program_starts(head: str, words: str) -> None:
-    begun_text = "SB" if head in BUTTONS else "SI"
+    start_word = "SB" if head in BUTTONS else "SI"
     for text in (f"{head} {words}", f"{head} {words};", f"{head} {words}\nS"):
         (diagnostic,) = check(text)
         assert diagnostic.code.number == "TS036", text
-        assert diagnostic.values["fix"] == f"{begun_text}|{ORDERS[words]}", text
+        assert diagnostic.values["fix"] == f"{start_word}|{ORDERS[words]}", text
         assert repair_program(text, check).text == text
 
 
@@ -152,8 +154,8 @@ BODIES = ("F(1, 80);", "SI|F(1, 80);", "SI\nF(1, 80)", "F(1, 80); // }", "SB", "
 @pytest.mark.parametrize("frame", FRAMES)
 @pytest.mark.parametrize("body", BODIES)
 def test_the_setup_of_a_sketch_begins_the_program(body: str, frame: str) -> None:
-    begun_text, bare = ("SB", body[2:]) if body[:2] == "SB" else ("SI", body.removeprefix("SI"))
-    right_text = f"{begun_text}|{bare.lstrip('|').lstrip()}"
+    start_word, bare = ("SB", body[2:]) if body[:2] == "SB" else ("SI", body.removeprefix("SI"))
+    right_text = f"{start_word}|{bare.lstrip('|').lstrip()}"
     rests = {"": "", "void loop() {\n  R(1, 60);\n}": "LOOP(FOREVER);\n  R(1, 60);\nEND_LOOP"}
     gaps = ("\n",) if "//" in body or not body else (" ", "\n  ")
     for (rest, loop), gap, brace in product(rests.items(), gaps, (" {", "\n{")):
@@ -161,7 +163,7 @@ def test_the_setup_of_a_sketch_begins_the_program(body: str, frame: str) -> None
         repaired_text = apply_edits(text, edits_of(check(text)[0]) or [])
         repaired_text = repair_program(repaired_text, check).text
         assert compile(repaired_text).code == compile(f"{right_text}\n{loop}").code, text
-        assert repaired_text.startswith(f"{begun_text}|"), text
+        assert repaired_text.startswith(f"{start_word}|"), text
 
 
 @pytest.mark.parametrize("marks", ["\u201c\u201d", '""', "''", "\u00ab\u00bb"])

@@ -119,10 +119,10 @@ def test_suggestions_keep_a_unit_or_report_its_loss(text: str) -> None:
 @pytest.mark.sampled("part")
 @pytest.mark.parametrize("part", range(3))
 def test_no_repair_loses_a_sign_or_a_unit(part: int) -> None:
-    go_through(loses_nothing, WRITTEN[part::3])
+    go_through(check_nothing_is_lost, WRITTEN[part::3])
 
 
-def loses_nothing(text: str) -> None:
+def check_nothing_is_lost(text: str) -> None:
     for number, sign, space in product(("2", "0.5"), ("", "-", "- "), ("", " ")):
         for word, unit, scale in units():
             written_text = f"{sign}{number}{space}{word}"
@@ -229,7 +229,9 @@ def test_no_repair_removes_a_sign_as_a_command() -> None:
     """A stop sign is S, in any place; a sign without meaning may be removed."""
     rows = (read_language_file(language, "lexicon.txt").split("\n") for language in languages())
     command_rows = [row.partition("|") for its in rows for row in its if re.match("[FBLRS] ", row)]
-    signs = [(it[0].strip(), s) for it in command_rows for s in it[2].split() if not s.isascii()]
+    signs = [
+        (cells[0].strip(), s) for cells in command_rows for s in cells[2].split() if not s.isascii()
+    ]
     signs = [(word, sign) for word, sign in signs if len(sign) == 1 and not sign.isalpha()]
     assert ("S", "\U0001f6d1") in signs
     for word, sign in signs:

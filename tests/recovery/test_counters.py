@@ -35,12 +35,12 @@ def mend(wrong_text: str) -> str:
 def test_a_counter_that_is_used_grows_from_its_first_value(head: str, end: str) -> None:
     for name, (first, last), body, separator in product(NAMES, RANGES, BODIES, SEPARATORS):
         values = {"v": name, "a": first, "b": last, "c": last + 1}
-        begun_text, inside, ended_text = (part.format(**values) for part in (head, body, end))
-        wrong_text = f"SI|W(3)\n{begun_text}{separator}{inside}\n{ended_text}\nS"
+        text_before, inside, text_after = (part.format(**values) for part in (head, body, end))
+        wrong_text = f"SI|W(3)\n{text_before}{separator}{inside}\n{text_after}\nS"
         loop = f"LOOP({last - first + 1});{name.upper()} = {name.upper()} + 1"
         right_text = f"{name.upper()} = {first - 1};{loop}"
         assert right_text in [
-            message(it, Source(wrong_text), "en").fix for it in check(wrong_text)
+            message(diagnostic, Source(wrong_text), "en").fix for diagnostic in check(wrong_text)
         ], wrong_text
         assert mend(wrong_text) == f"SI|W(3)\n{right_text}{separator}{inside}\nEND_LOOP\nS"
         assert not check(mend(wrong_text))

@@ -42,12 +42,12 @@ def places(body: tuple[str, ...]) -> str:
 
 
 @pytest.mark.parametrize("separator", [";", "; ", " ; "])
-@pytest.mark.parametrize(("begun_text", "block"), [*product(PROGRAM_HEADS, BLOCKS)])
+@pytest.mark.parametrize(("open_text", "block"), [*product(PROGRAM_HEADS, BLOCKS)])
 def test_each_possible_end_is_named_but_none_is_inserted(
-    begun_text: str, block: tuple[str, str], separator: str
+    open_text: str, block: tuple[str, str], separator: str
 ) -> None:
     for body in BODIES:
-        text = begun_text + separator.join((block[0], *body))
+        text = open_text + separator.join((block[0], *body))
         _, tried_text = code_and_fix(text)
         assert (
             tried_text

@@ -103,7 +103,11 @@ def test_a_letter_for_a_sensor_is_shown_as_that_sensor(side: str) -> None:
             "LOOP(2);{};END_LOOP",
             "DEF A1;{};END_DEF",
         ):
-            (diagnostic,) = (it for it in check(place.replace("{}", text)) if it.is_mistake)
+            (diagnostic,) = (
+                diagnostic
+                for diagnostic in check(place.replace("{}", text))
+                if diagnostic.is_mistake
+            )
             assert diagnostic.values["reading"] == f"LIGHT_{side}", place
 
 
@@ -115,8 +119,8 @@ def test_a_paraphrased_light_sensor_becomes_its_reading(stem: str, way: str, sid
     for form, place in product(
         ("{0}_{1}", "{1}_{0}", "{0}{1}", "{1}{0}", "{0}({1})", "{0} {1}"), PLACES
     ):
-        asked_text = f"{form.format(stem, way)} > 300"
-        assert repair_program(place.replace("{}", asked_text), check).text == place.replace(
+        condition_text = f"{form.format(stem, way)} > 300"
+        assert repair_program(place.replace("{}", condition_text), check).text == place.replace(
             "{}", f"LIGHT_{side[0]} > 300"
         )
 

@@ -83,8 +83,8 @@ def test_an_unmatched_end_or_one_across_a_branch_is_not_swapped() -> None:
 @pytest.mark.parametrize("sign", ["; ", ";", ", "])
 @pytest.mark.parametrize("template", ["SI|{}", "SI|W(1);{}", "SI|LOOP(2)\n{}\nEND_LOOP", "{};W(1)"])
 def test_the_second_branch_of_a_question_is_its_else(word: str, sign: str, template: str) -> None:
-    asked_text = sign.join(["LIGHT_L > 300", "L(1, 60)", "BEEP(1, 440)"])
-    wrong_text = template.format(f"{word}({asked_text})")
+    question_text = sign.join(["LIGHT_L > 300", "L(1, 60)", "BEEP(1, 440)"])
+    wrong_text = template.format(f"{word}({question_text})")
     right_text = template.format("IF(LIGHT_L > 300);L(1, 60);ELSE;BEEP(1, 440);ENDIF")
     assert apply_fix(wrong_text, check(wrong_text)[0]).replace("; ", ";") == right_text
 
@@ -324,12 +324,13 @@ def test_a_message_names_the_word_that_was_written(word: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("asked_text", "next_move"), [*product(["DISTANCE<25", "LIGHT_L > 300"], "FB")]
+    ("condition_text", "next_move"), [*product(["DISTANCE<25", "LIGHT_L > 300"], "FB")]
 )
-def test_the_question_after_until_is_shown(asked_text: str, next_move: str) -> None:
-    text = f"SI|F(5, 60) UNTIL {asked_text}. {next_move}(1, 50)"
+def test_the_question_after_until_is_shown(condition_text: str, next_move: str) -> None:
+    text = f"SI|F(5, 60) UNTIL {condition_text}. {next_move}(1, 50)"
     assert (
-        repair_program(text, check).text == f"SI|F(5, 60) UNTIL({asked_text}); {next_move}(1, 50)"
+        repair_program(text, check).text
+        == f"SI|F(5, 60) UNTIL({condition_text}); {next_move}(1, 50)"
     )
 
 

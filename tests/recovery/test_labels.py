@@ -35,7 +35,7 @@ WORD_LABELS = (
     "{w} nº {n}:",
     "{w}{n}:",
 )
-LABELS = [*NUMBER_LABELS, *(it.replace("{w}", w) for w, it in product(WORDS, WORD_LABELS))]
+LABELS = [*NUMBER_LABELS, *(label.replace("{w}", w) for w, label in product(WORDS, WORD_LABELS))]
 PROGRAMS = (
     ("F(2, 60)", "L(90 DEG, 60)", "BEEP(1, 500)", "S"),
     ("LOOP(2)", "F(25 CM, 60)", "END_LOOP", "S"),
@@ -54,10 +54,10 @@ def add_labels(label: str, program: tuple[str, ...]) -> list[str]:
 @pytest.mark.sampled("label", keep=32)
 @pytest.mark.parametrize("label", LABELS)
 def test_a_label_is_removed_anywhere(label: str) -> None:
-    for program, (begun_text, separator) in product(PROGRAMS, PLACES):
-        wrong_text = begun_text + separator.join(add_labels(label, program))
+    for program, (text_before, separator) in product(PROGRAMS, PLACES):
+        wrong_text = text_before + separator.join(add_labels(label, program))
         assert {diagnostic.code.number for diagnostic in check(wrong_text)} == {"TS054"}, wrong_text
-        assert repair_program(wrong_text, check).text == begun_text + separator.join(program), (
+        assert repair_program(wrong_text, check).text == text_before + separator.join(program), (
             wrong_text
         )
 

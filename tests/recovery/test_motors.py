@@ -64,7 +64,7 @@ OFF = ("stop()", "mBot.stop()", "S", "parar()")
 
 
 @pytest.mark.sampled("place")
-@pytest.mark.parametrize("place", [it for it in PLACES if it != "{}"])
+@pytest.mark.parametrize("place", [place for place in PLACES if place != "{}"])
 @pytest.mark.parametrize("off", OFF)
 def test_motors_on_and_off_after_a_wait_are_a_move(off: str, place: str) -> None:
     for separator, (on, word), (wait, time) in product(SEPARATORS, ON.items(), WAITS.items()):

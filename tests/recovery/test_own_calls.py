@@ -36,7 +36,7 @@ def test_brackets_may_be_missing_around_any_count(count: int, joint: str, other:
     right_text = {"head": f"({', '.join(names)})", "call": f"({', '.join(numbers)})"}
     bare = {"head": f" {joint.join(names)}", "call": f" {other.join(numbers)}"}
     for lacks in ({"head"}, {"call"}, {"head", "call"}):
-        wrong_text = program(count=count, **{**right_text, **{it: bare[it] for it in lacks}})
+        wrong_text = program(count=count, **{**right_text, **{text: bare[text] for text in lacks}})
         assert repair_program(wrong_text, check).text == program(count=count, **right_text), (
             wrong_text
         )
@@ -70,7 +70,7 @@ def test_no_message_about_a_def_has_a_gap_or_a_wrong_word(language: str) -> None
 
 # -- the message about each call, in every language ---------------------------------------------
 
-GIVEN_VALUES = (
+VALUE_LISTS = (
     "3",
     "30 CM",
     "-3",
@@ -88,8 +88,8 @@ UNTAUGHT_NAMES = ("A", "Q", "AB", "ABC", "LADO", "SIDE", "CUADRADO", "HOLA_2", "
 
 @pytest.mark.parametrize("name", UNTAUGHT_NAMES)
 def test_an_undefined_word_is_explained_with_def_for_any_values(name: str) -> None:
-    for given_text in GIVEN_VALUES:
-        text = f"{name}({given_text})"
+    for values_text in VALUE_LISTS:
+        text = f"{name}({values_text})"
         first = check(text)[0]
         for language in languages():
             full_message = message(first, Source(text, ""), language)
@@ -119,15 +119,15 @@ KINDS = (
 )  # fmt: skip
 
 
-@each_row("body, given_text, code", KINDS)
+@each_row("body, values_text, code", KINDS)
 def test_a_body_that_needs_another_kind_names_the_first_call(
-    body: str, given_text: str, code: str
+    body: str, values_text: str, code: str
 ) -> None:
     """Also below a call through another DEF; variables of the program are reported as before."""
     for text, called_text in (
-        (f"DEF SIDE(N);{body};END_DEF;SIDE({given_text})", "SIDE"),
-        (f"DEF SIDE(n);{body};END_DEF;DEF TWO(K);SIDE(K);END_DEF;TWO({given_text})", "SIDE"),
-        (f"N = {given_text};{body}", ""),
+        (f"DEF SIDE(N);{body};END_DEF;SIDE({values_text})", "SIDE"),
+        (f"DEF SIDE(n);{body};END_DEF;DEF TWO(K);SIDE(K);END_DEF;TWO({values_text})", "SIDE"),
+        (f"N = {values_text};{body}", ""),
     ):
         (diagnostic,) = (diagnostic for diagnostic in check(text) if diagnostic.code.number == code)
         for language in languages():

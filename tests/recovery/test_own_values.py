@@ -27,10 +27,10 @@ THOUSANDS = ("1,000", "2,500", "12,000", "1,500")
 def test_a_unit_given_as_a_value_joins_its_value(
     form: str, word: str, unit: str, value: str, power: str
 ) -> None:
-    begun_text = "V = 12;" if "V" in (value, power) else ""
+    declaration = "V = 12;" if "V" in (value, power) else ""
     for place in PLACES:
         wrong_text, right_text = (
-            place.replace("SI|", f"SI|{begun_text}").format(call)
+            place.replace("SI|", f"SI|{declaration}").format(call)
             for call in (
                 form.format(w=word, u=unit, v=value, p=power),
                 f"{word}({value} {unit}, {power})",

@@ -308,7 +308,8 @@ def test_no_unintended_number_or_word_is_reported(
 ) -> None:
     diagnostics = check(wrong_text)
     assert any(
-        {name: it.values.get(name) for name in expected} == expected for it in diagnostics
+        {name: diagnostic.values.get(name) for name in expected} == expected
+        for diagnostic in diagnostics
     ), diagnostics
 
 

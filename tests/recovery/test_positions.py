@@ -70,16 +70,16 @@ def test_a_row_means_the_same_wherever_its_instruction_stands(part: int) -> None
 
 
 def check_same_meaning_everywhere(wrong_text: str) -> None:
-    alone = find_meant_program(wrong_text)
-    if alone is None:
+    meant_alone = find_meant_program(wrong_text)
+    if meant_alone is None:
         return  # the program depends on its lines in the table
-    is_open = ends(alone.text) > ends(
+    is_open = ends(meant_alone.text) > ends(
         wrong_text
     )  # later lines may belong to the block that it begins
-    is_free = not TOP_LEVEL_WORD.search(alone.text.upper())
+    is_free = not TOP_LEVEL_WORD.search(meant_alone.text.upper())
     for place in (*PLACES_ON_A_LINE, *(PLACES_IN_A_BLOCK if is_free else ())):
         candidate = find_meant_program(place.format(wrong_text))
-        same = place.format(alone.text)
+        same = place.format(meant_alone.text)
         if is_open and not place.endswith("{}"):
             assert (
                 candidate is None
@@ -90,5 +90,5 @@ def check_same_meaning_everywhere(wrong_text: str) -> None:
             assert candidate, place
             assert (words_of(candidate.text), candidate.is_applied) == (
                 words_of(same),
-                alone.is_applied,
+                meant_alone.is_applied,
             ), place

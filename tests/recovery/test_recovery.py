@@ -212,16 +212,16 @@ def test_words_of_a_kit_are_recognized_only_on_its_robots(
 
 
 @pytest.mark.parametrize(
-    ("wrong_text", "asked_text"),
+    ("wrong_text", "question_text"),
     [
         ("X == 6", "X = 6"),
         ("F(1, 50)\nREPITE", None),  # no empty block is offered
     ],
 )
-def test_possible_meanings_become_a_question(wrong_text: str, asked_text: str | None) -> None:
+def test_possible_meanings_become_a_question(wrong_text: str, question_text: str | None) -> None:
     candidate = find_meant_program(wrong_text)
     assert (candidate and candidate.text, bool(candidate and candidate.is_applied)) == (
-        asked_text,
+        question_text,
         False,
     )
 

@@ -65,10 +65,10 @@ _BLOCK_WORDS = {word for word, row in WORDS.items() if row.role.belongs_to_block
 @pytest.mark.parametrize("seed", range(SEEDS_IN_CI))
 def test_only_the_wrong_line_is_reported(seed: int) -> None:
     """After, before and between right ones, which are no longer looked at for warnings."""
-    chance = random.Random(seed)
-    program, line = chance.choice(right_lines()), chance.choice(wrong_lines())
+    rng = random.Random(seed)
+    program, line = rng.choice(right_lines()), rng.choice(wrong_lines())
     rows = program.split("\n")
-    k = chance.choice([k for k in range(1, len(rows) + 1) if _is_closed("\n".join(rows[:k]))])
+    k = rng.choice([k for k in range(1, len(rows) + 1) if _is_closed("\n".join(rows[:k]))])
     check_reported_alone(rows[:k], line, rows[k:])
 
 

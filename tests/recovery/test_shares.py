@@ -17,17 +17,19 @@ PLACES = (
 
 @pytest.mark.parametrize("percent", ["%", " %", " percent", " por ciento", " PORCIENTO"])
 @pytest.mark.parametrize(
-    ("asked_text", "share"),
+    ("comparison_text", "share"),
     [("LIGHT_L > 80", "LIGHT_L > 818"), ("DISTANCE < 50", "DISTANCE < 200")],
 )
 def test_a_percentage_of_a_sensor_is_converted_to_its_range(
-    asked_text: str, share: str, percent: str
+    comparison_text: str, share: str, percent: str
 ) -> None:
     for place in PLACES:
-        wrong_text = place.replace("{}", asked_text + percent)
+        wrong_text = place.replace("{}", comparison_text + percent)
         (diagnostic,) = check(wrong_text)
         tried_text = message(diagnostic, Source(wrong_text), "en").fix
-        assert f"write {share};" in tried_text and tried_text.endswith(f"write {asked_text}"), place
+        assert f"write {share};" in tried_text and tried_text.endswith(
+            f"write {comparison_text}"
+        ), place
         assert repair_program(wrong_text, check).text == wrong_text
 
 

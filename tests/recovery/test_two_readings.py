@@ -46,12 +46,12 @@ def test_possible_comments_are_read_as_comments_first(words: str, language: str)
 
 @pytest.mark.parametrize("separator", [";", "\n"])
 @pytest.mark.parametrize("template", SURROUNDINGS)
-@pytest.mark.parametrize(("asked_text", "else_condition"), IFS)
+@pytest.mark.parametrize(("condition_text", "else_condition"), IFS)
 def test_an_else_with_the_opposite_condition_needs_none(
-    asked_text: str, else_condition: str, template: str, separator: str
+    condition_text: str, else_condition: str, template: str, separator: str
 ) -> None:
     body = separator.join(
-        (f"IF({asked_text})", "B(1, 60)", f"ELSE({else_condition})", "F(1, 60)", "ENDIF")
+        (f"IF({condition_text})", "B(1, 60)", f"ELSE({else_condition})", "F(1, 60)", "ENDIF")
     )
     wrong_text = template.format(body)
     diagnostic = next(

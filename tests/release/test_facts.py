@@ -66,8 +66,8 @@ def clone(tmp_path: Path) -> Path:
         path.write_text(text, encoding="utf-8")
     (root / "CHANGELOG.md").write_text(CHANGELOG, encoding="utf-8")
     replace_in_file("SECURITY.md", facts.NO_CONTACT, "people@example.org")(root)
-    about = root / "pyproject.toml"
-    about.write_text(facts.with_address(about.read_text("utf-8"), URL), encoding="utf-8")
+    pyproject = root / "pyproject.toml"
+    pyproject.write_text(facts.with_address(pyproject.read_text("utf-8"), URL), encoding="utf-8")
     git(tmp_path, "init", "-q", str(root))
     commit(root)
     return root
@@ -176,7 +176,7 @@ def test_a_different_address_is_kept(
     for url, commits in ((URL, 1), ("https://example.org/other", 2)):
         scratch = tmp_path / str(commits)
         scratch.mkdir()
-        shared_clone, other_clone = release._clones(scratch, url, whole_stick=False)
+        shared_clone, other_clone = release._clones(scratch, url, needs_whole_stick=False)
         assert shared_clone.seed != other_clone.seed, "an order of sets would be seen"
         log = subprocess.run(["git", "-C", shared_clone.root, "log", "--format=%s"], text=True,
                               capture_output=True, check=True)  # fmt: skip
@@ -200,7 +200,7 @@ def test_clones_of_one_commit_give_the_same_bytes_whenever_they_are_made(
     clones = list[Clone]()
     for name in ("first", "second"):
         (tmp_path / name).mkdir()
-        clones += release._clones(tmp_path / name, url, whole_stick=False)
+        clones += release._clones(tmp_path / name, url, needs_whole_stick=False)
     assert len({git(made_clone.root, "rev-parse", "HEAD^{tree}") for made_clone in clones}) == 1
     facts_kept = {one._replace(root=tmp_path, parts=tmp_path, seed=0) for one in clones}
     assert len(facts_kept) == 1

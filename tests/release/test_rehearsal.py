@@ -45,7 +45,7 @@ def test_failures_in_or_of_a_clone_are_errors(
                 clone.python(*words, good_codes=good_codes)
     monkeypatch.setattr(release, "ROOT", tmp_path / "nowhere")
     with pytest.raises(CannotMake, match="no clone"):
-        release._clones(tmp_path, "", whole_stick=False)
+        release._clones(tmp_path, "", needs_whole_stick=False)
 
 
 @pytest.mark.parametrize(

@@ -158,9 +158,9 @@ def compile_all(robot: Robot, folder: Path) -> None:
     words = (*boards.flags_of(robot.board.chip, boards.FLAGS), *boards.CPP, "-Wall", "-Wextra",
              "-Wpedantic", "-Werror", "-fsyntax-only")  # fmt: skip
     boards.run("avr-g++", *words, *boards.flags_for(header), own_define, *KNOWING)
-    its = folder / "sketch.cpp"
-    its.write_text(write_header_and_sketch(robot)[1], encoding="utf-8")
-    boards.run("avr-g++", *words, its)
+    sketch_path = folder / "sketch.cpp"
+    sketch_path.write_text(write_header_and_sketch(robot)[1], encoding="utf-8")
+    boards.run("avr-g++", *words, sketch_path)
 
 
 @pytest.mark.sampled("robot", keep=12)

@@ -422,26 +422,26 @@ ODD_NUMBERS = (
 )  # fmt: skip
 
 
-def mutate(text: str, chance: random.Random) -> str:
+def mutate(text: str, rng: random.Random) -> str:
     """A text with some lines deleted, doubled, moved, or given another value."""
     lines = text.split("\n")
-    for _ in range(chance.choice((1, 1, 2, 5, 20))):
-        index = chance.randrange(len(lines))
+    for _ in range(rng.choice((1, 1, 2, 5, 20))):
+        index = rng.randrange(len(lines))
         key, equals, _ = lines[index].partition("=")
-        kind = chance.randrange(6)
+        kind = rng.randrange(6)
         if kind == 0:
             del lines[index]
         elif kind == 1:
-            lines.insert(chance.randrange(len(lines)), lines[index])
+            lines.insert(rng.randrange(len(lines)), lines[index])
         elif kind == 2 and lines[index]:
-            cut = chance.randrange(len(lines[index]))
+            cut = rng.randrange(len(lines[index]))
             lines[index] = (
-                lines[index][:cut] + chance.choice('"[]{}=.#\\x5\x00') + lines[index][cut + 1 :]
+                lines[index][:cut] + rng.choice('"[]{}=.#\\x5\x00') + lines[index][cut + 1 :]
             )
         elif kind == 3:
-            lines[index] = re.sub(r"-?\d+", lambda _: chance.choice(ODD_NUMBERS), lines[index])
+            lines[index] = re.sub(r"-?\d+", lambda _: rng.choice(ODD_NUMBERS), lines[index])
         elif equals:
-            lines[index] = f"{key}= {chance.choice(ODD_NUMBERS)}"
+            lines[index] = f"{key}= {rng.choice(ODD_NUMBERS)}"
         lines = lines or [""]
     return "\n".join(lines)
 
@@ -449,11 +449,11 @@ def mutate(text: str, chance: random.Random) -> str:
 @pytest.mark.sampled("seed", keep=10)
 @pytest.mark.parametrize("seed", range(40))
 def test_a_broken_profile_is_always_refused(seed: int) -> None:
-    chance = random.Random(seed)
+    rng = random.Random(seed)
     for _ in range(50):
-        name = chance.choice(sorted(TEXTS))
+        name = rng.choice(sorted(TEXTS))
         try:
-            robot = read(mutate(TEXTS[name], chance), name)
+            robot = read(mutate(TEXTS[name], rng), name)
         except ProfileRefused as refusal:
             assert refusal.reasons
             for language in LANGUAGES:

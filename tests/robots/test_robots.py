@@ -225,13 +225,15 @@ def test_every_driver_has_a_use_and_needs_known_abilities() -> None:
 
 @pytest.mark.parametrize("chip", CHIPS.values(), ids=list(CHIPS))
 def test_every_ability_has_a_pin_and_link_pins_have_none(chip: Chip) -> None:
-    every = chip.digital_pins | chip.reading_pins | chip.analog_pins
-    assert not every & chip.link_pins
+    all_pins = chip.digital_pins | chip.reading_pins | chip.analog_pins
+    assert not all_pins & chip.link_pins
     assert set(chip.timer_of_pwm_pin) <= chip.digital_pins
     assert all(chip.has_ability(pin, "input") for pin in chip.digital_pins | chip.reading_pins)
-    missing = {need for need in ABILITIES if not any(chip.has_ability(pin, need) for pin in every)}
+    missing = {
+        need for need in ABILITIES if not any(chip.has_ability(pin, need) for pin in all_pins)
+    }
     assert missing == ({"count"} if chip.name == "esp32c3" else set())
-    assert all(chip.pin_number(_parse_key(chip.pin_name(pin))) == pin for pin in every)
+    assert all(chip.pin_number(_parse_key(chip.pin_name(pin))) == pin for pin in all_pins)
 
 
 def _parse_key(name: str) -> object:

@@ -1,4 +1,6 @@
-"""The duration of a program from its text alone: `least`, `most` (None: no bound), `never_ends`."""
+"""The duration of a program from its text alone: `least_ms`, `most_ms` (None: no bound) and
+`never_ends`.
+"""
 
 from __future__ import annotations
 
@@ -21,7 +23,7 @@ def duration_of(text: str, is_optimized: bool = True) -> Duration:
 
 
 @each_row(
-    "text, least, most",
+    "text, least_ms, most_ms",
     [
         ("F(1.5, 80);W(0.25);BEEP(0.5, 440)", 2250, 2250),
         ("W(1 - 3)", 0, 0),  # a time below 0 counts as 0
@@ -56,14 +58,14 @@ def duration_of(text: str, is_optimized: bool = True) -> Duration:
     ],
 )
 def test_the_duration_of_an_ending_program_is_known(
-    text: str, least: int, most: int | None
+    text: str, least_ms: int, most_ms: int | None
 ) -> None:
     for is_optimized in (True, False):
-        assert duration_of(text, is_optimized) == Duration(least, most, False)
+        assert duration_of(text, is_optimized) == Duration(least_ms, most_ms, False)
 
 
 @pytest.mark.parametrize(
-    ("text", "least"),
+    ("text", "least_ms"),
     [
         ("W(2);LOOP(FOREVER);W(1);END_LOOP", 2000),
         (
@@ -75,8 +77,8 @@ def test_the_duration_of_an_ending_program_is_known(
         ("W(1);WHEN(DISTANCE < 9);SHOW(1);END_WHEN", 1000),  # a WHEN watches forever
     ],
 )
-def test_an_endless_program_has_no_duration(text: str, least: int) -> None:
-    assert duration_of(text) == Duration(least, None, True)
+def test_an_endless_program_has_no_duration(text: str, least_ms: int) -> None:
+    assert duration_of(text) == Duration(least_ms, None, True)
 
 
 def test_one_ending_branch_is_enough() -> None:

@@ -55,7 +55,9 @@ def test_each_use_up_to_the_next_assignment_is_rewritten() -> None:
     [("mm", "300", "30 CM"), ("m", "0.5", "50 CM"), ("cm", "30", "30 CM"), ("°", "90", "90 DEG")],
 )
 def test_the_unit_of_the_move_follows_the_sensor(unit: str, number: str, way: str) -> None:
-    sensors = tuple(it._replace(unit=unit) if it.unit == "cm" else it for it in TINIBOT.sensors)
+    sensors = tuple(
+        sensor._replace(unit=unit) if sensor.unit == "cm" else sensor for sensor in TINIBOT.sensors
+    )
     word = "R" if way.endswith("DEG") else "F"
     text = f"SI|DISTANCE = {number};{word}(DISTANCE, 60)"
     (diagnostic,) = check_text(text, TINIBOT._replace(sensors=sensors)).diagnostics
@@ -89,7 +91,7 @@ def test_instructions_after_a_break_move_into_the_other_branch(
     separator: str, head: str, inside: list[str], rest: list[str], template: str
 ) -> None:
     text = template.format(separator.join([head, *inside, "BREAK", "ENDIF", *rest]))
-    diagnostic = next(it for it in check(text) if it.code.number == "TS115")
+    diagnostic = next(diagnostic for diagnostic in check(text) if diagnostic.code.number == "TS115")
     right_text = [head, *(inside or ["S"]), "ELSE", *rest, "ENDIF"]
     assert diagnostic.values["fix"] == ";".join(right_text)
     assert diagnostic.repair is not None
@@ -107,7 +109,7 @@ def test_comments_around_a_break_are_kept(
     head: str, inside: list[str], rest: list[str], template: str
 ) -> None:
     text = template.format("\n".join([head, *inside, "BREAK // it ends", "ENDIF // if", *rest]))
-    diagnostic = next(it for it in check(text) if it.code.number == "TS115")
+    diagnostic = next(diagnostic for diagnostic in check(text) if diagnostic.code.number == "TS115")
     assert diagnostic.repair is not None
     text_after = apply_edits(text, diagnostic.repair.edits)
     last_comment = " // it ends" if inside else "S // it ends"
@@ -132,7 +134,7 @@ def test_a_break_in_the_else_is_repaired_in_reverse() -> None:
      "SI|IF(DISTANCE < 9);BREAK;ENDIF;DEF A;S;END_DEF;A"],
 )  # fmt: skip
 def test_no_branch_is_offered_if_nothing_or_too_much_is_skipped(text: str) -> None:
-    diagnostic = next(it for it in check(text) if it.code.number == "TS115")
+    diagnostic = next(diagnostic for diagnostic in check(text) if diagnostic.code.number == "TS115")
     assert not diagnostic.values.get("fix") and diagnostic.repair is None
 
 
@@ -151,21 +153,23 @@ def find_diagnostics(text: str, kit: Kit) -> list[Diagnostic]:
 
 
 @pytest.mark.parametrize("template", ["SI|{}", "SI|W(2);{};F(1, 60)", "LOOP(2);{};END_LOOP"])
-@pytest.mark.parametrize("given_text", SWITCHED)
+@pytest.mark.parametrize("state_text", SWITCHED)
 @pytest.mark.parametrize("word", [*LAMPS, *LIGHTS])
-def test_a_robot_without_a_lamp_is_reported(word: str, given_text: str, template: str) -> None:
-    text = template.format(f"{word}({given_text})")
-    (shown_message,) = [message(it, Source(text), "en") for it in find_diagnostics(text, TINIBOT)]
+def test_a_robot_without_a_lamp_is_reported(word: str, state_text: str, template: str) -> None:
+    text = template.format(f"{word}({state_text})")
+    (shown_message,) = [
+        message(diagnostic, Source(text), "en") for diagnostic in find_diagnostics(text, TINIBOT)
+    ]
     assert shown_message.code == "TS122"
     assert f"no lamp that a program can switch with {word}" in shown_message.message
 
 
-@pytest.mark.parametrize("given_text", SWITCHED)
+@pytest.mark.parametrize("state_text", SWITCHED)
 @pytest.mark.parametrize("word", [*LAMPS, *LIGHTS])
-def test_a_robots_lamp_is_named(word: str, given_text: str) -> None:
-    text = f"SI|{word}({given_text});W(1)"
+def test_a_robots_lamp_is_named(word: str, state_text: str) -> None:
+    text = f"SI|{word}({state_text});W(1)"
     (diagnostic,) = find_diagnostics(text, LINER)
-    answer = "TRUE" if given_text in ("ON", "HIGH", "TRUE", "1") else "FALSE"
+    answer = "TRUE" if state_text in ("ON", "HIGH", "TRUE", "1") else "FALSE"
     assert f"LED({answer})" in message(diagnostic, Source(text), "en").fix
 
 
@@ -215,10 +219,12 @@ def test_the_letter_a_beside_another_initial_means_forward(
 ) -> None:
     for first, second in (("A(2, 70)", other_statement), (other_statement, "a(2, 70)")):
         text = place.format(f"{first};{second}")
-        near = {it.values["found"]: it.values.get("near") for it in check(text)}
-        assert near["A"] == "F", text
+        near_by_word = {
+            diagnostic.values["found"]: diagnostic.values.get("near") for diagnostic in check(text)
+        }
+        assert near_by_word["A"] == "F", text
 
 
 @pytest.mark.parametrize("text", ["A(2, 70)", "A(2, 70);F(1, 50);D(1, 50)", "A(2, 70);L(1, 50)"])
 def test_an_initial_alone_or_beside_an_f_is_not_a_word(text: str) -> None:
-    assert all(it.values.get("near") != "F" for it in check(text))
+    assert all(diagnostic.values.get("near") != "F" for diagnostic in check(text))

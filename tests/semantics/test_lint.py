@@ -172,18 +172,18 @@ def test_warnings_are_for_right_programs_only() -> None:
 
 
 @each_row(
-    "text, wanted_text",
+    "text, expected_text",
     [
         ("TASK;W(1);END_TASK;S", "TASK;LOOP(FOREVER);W(1);END_LOOP;END_TASK;S"),
         ("TASK // beeps\n  W(1) // so\nENDTASK;S",
          "TASK\nLOOP(FOREVER) // beeps\n  W(1) // so\nEND_LOOP\nENDTASK;S"),
     ],
 )  # fmt: skip
-def test_a_loop_is_suggested_around_a_task_that_runs_once(text: str, wanted_text: str) -> None:
+def test_a_loop_is_suggested_around_a_task_that_runs_once(text: str, expected_text: str) -> None:
     (diagnostic,) = check_text(text, KIT).diagnostics
     assert diagnostic.repair is not None
-    assert apply_edits(text, diagnostic.repair.edits) == wanted_text
-    assert not check_text(wanted_text, KIT).diagnostics
+    assert apply_edits(text, diagnostic.repair.edits) == expected_text
+    assert not check_text(expected_text, KIT).diagnostics
 
 
 def warnings_of(text: str) -> list[str]:
@@ -217,7 +217,9 @@ def test_a_while_that_its_moves_never_end_is_inverted(word: str, sign: str) -> N
     for body in (move, f"{move};{move}", f"SHOW(DISTANCE);{move}", f"BEEP(0.1, 440);{move}"):
         text = f"WHILE(DISTANCE {sign} 20);{body};END_WHILE"
         diagnostics = [
-            it for it in check_text(text, KIT).diagnostics if it.code is codes.TURNED_ROUND
+            diagnostic
+            for diagnostic in check_text(text, KIT).diagnostics
+            if diagnostic.code is codes.TURNED_ROUND
         ]
         assert bool(diagnostics) is is_turned, text
         for diagnostic in diagnostics:
@@ -257,21 +259,27 @@ def test_constant_min_max_expressions_are_recognized(low: int, high: int) -> Non
         ):  # fmt: skip
             program = f"X = DISTANCE;F(1, {text});SHOW(X)"
             diagnostics = [
-                it for it in check_text(program, KIT).diagnostics if it.code is codes.KNOWN_ANSWER
+                diagnostic
+                for diagnostic in check_text(program, KIT).diagnostics
+                if diagnostic.code is codes.KNOWN_ANSWER
             ]
             assert bool(diagnostics) is is_known, text
-            assert all(it.values["number"] == str(low) for it in diagnostics)
+            assert all(diagnostic.values["number"] == str(low) for diagnostic in diagnostics)
 
 
 @pytest.mark.parametrize("past", ["W(9)", "F(4, 60);B(5, 60)", "WHILE(TIME < 9);W(1);END_WHILE"])
 @pytest.mark.parametrize("limit", [5, 9, 10])
 def test_a_past_time_is_reported_with_later_instructions(past: str, limit: int) -> None:
     text = f"{past};WHILE(TIME < {limit});BEEP(1, 440);END_WHILE"
-    diagnostics = [it for it in check_text(text, KIT).diagnostics if it.code is codes.KNOWN_ANSWER]
+    diagnostics = [
+        diagnostic
+        for diagnostic in check_text(text, KIT).diagnostics
+        if diagnostic.code is codes.KNOWN_ANSWER
+    ]
     assert bool(diagnostics) is (limit <= 9), text
-    assert [it.values["later"] for it in diagnostics] == [f"WHILE(TIME < {9 + limit})"] * (
-        limit <= 9
-    )
+    assert [diagnostic.values["later"] for diagnostic in diagnostics] == [
+        f"WHILE(TIME < {9 + limit})"
+    ] * (limit <= 9)
     for other in (
         f"WHEN(DISTANCE < 9);S;END_WHEN;{text}",
         text.replace("W(9)", "W(9) UNTIL(KEY_A)"),

@@ -50,14 +50,14 @@ def diagnostics_of(code: codes.Code, text: str) -> list[Diagnostic]:
 @pytest.mark.parametrize("read", READ)
 @pytest.mark.parametrize("question", QUESTIONS)
 def test_a_condition_checked_only_once_is_reported(template: str, read: str, question: str) -> None:
-    asked_text = read.format(q=question)
-    text = template.format(asked_text)
+    condition_text = read.format(q=question)
+    text = template.format(condition_text)
     (diagnostic,) = diagnostics_of(codes.ASKED_ONCE, text)
     name = re.findall(r"(?:KEY|PAD)_\w+", question)[0]
     assert text[slice(*diagnostic.span)] == name
     assert name in (diagnostic.values.get("early"), diagnostic.values.get("name"))
     is_early = template in ("{}", "SI|{}", *SURROUNDINGS[4:5], SURROUNDINGS[6], SURROUNDINGS[9])
-    assert ("early" in diagnostic.values) == is_early or "W(1);ELSEIF" in asked_text
+    assert ("early" in diagnostic.values) == is_early or "W(1);ELSEIF" in condition_text
     if diagnostic.repair and "IF(DISTANCE < 9)" not in text and "WHEN" not in text:
         assert not diagnostics_of(codes.ASKED_ONCE, apply_edits(text, diagnostic.repair.edits))
 
@@ -96,7 +96,11 @@ def test_no_example_has_a_single_check_or_a_lone_task() -> None:
     assert places
     for place in places:
         text = place.read_text()
-        warnings = [it.code for it in check(text) if it.code in (codes.ASKED_ONCE, codes.LONE_TASK)]
+        warnings = [
+            diagnostic.code
+            for diagnostic in check(text)
+            if diagnostic.code in (codes.ASKED_ONCE, codes.LONE_TASK)
+        ]
         assert not warnings, place
 
 

@@ -101,13 +101,13 @@ def test_a_kit_with_room_has_remote_readings_on_both_machines(count: int) -> Non
     compilation = compile_text("LAMP(KEY_B);SHOW(PAD_Y)", kit)
     assert compilation.is_right, codes_of(compilation)
     senses = {count + 5: [1], count + 7: [-3 * ONE]}
-    want = [
+    expected = [
         "0 READ KEY_B TRUE", "0 SET LAMP TRUE", "0 READ PAD_Y -3", "0 SHOW -3", "0 DONE",
     ]  # fmt: skip
     code = unpack(compilation.image).code
     for machine in (machine_of, WasmImage(compilation.image, kit).machine):
         *events, _ = run_code(code, kit, Senses(kit, senses), machine_of=machine)
-        assert [str(event) for event in events] == want
+        assert [str(event) for event in events] == expected
 
 
 @pytest.mark.parametrize("count", [9, 16, 32])
@@ -148,8 +148,8 @@ def test_a_word_of_the_profile_keeps_its_meaning(is_actuator: bool) -> None:
     compilation = compile_text("KEY_A(TRUE)" if is_actuator else "SHOW(KEY_A)", kit)
     assert compilation.is_right and compilation.verdict is not None
     assert compilation.verdict.uses == (("actuator" if is_actuator else "sensor", 0),)
-    wanted_code = codes.ACTUATOR_SET if is_actuator else codes.SENSOR_SET
-    assert codes_of(compile_text("KEY_A = TRUE", kit)) == [wanted_code.number]
+    expected_code = codes.ACTUATOR_SET if is_actuator else codes.SENSOR_SET
+    assert codes_of(compile_text("KEY_A = TRUE", kit)) == [expected_code.number]
     other_compilation = compile_text("SHOW(KEY_B)", kit)
     assert other_compilation.verdict is not None
     assert other_compilation.verdict.uses == (("sensor", 5 if is_actuator else 6),)
@@ -218,9 +218,9 @@ def test_programs_that_compiled_before_still_compile(role: str, name: str) -> No
 @pytest.mark.parametrize("name", NAMES)
 @pytest.mark.parametrize("role", REFUSED_PROGRAMS)
 def test_previously_invalid_names_are_remote_readings(role: str, name: str) -> None:
-    text, wanted_codes = REFUSED_PROGRAMS[role]
+    text, expected_codes = REFUSED_PROGRAMS[role]
     compilation = compile_text(fill_in_name(text, name), TINIBOT)
-    assert codes_of(compilation) == [code.number for code in wanted_codes]
+    assert codes_of(compilation) == [code.number for code in expected_codes]
 
 
 @pytest.mark.parametrize("name", ["DISTANCE", "LIGHT_L"])
@@ -280,9 +280,9 @@ def test_a_shadowed_name_has_a_variable_block(text: str, kind: str) -> None:
 def test_a_run_uses_remote_readings(tsc: Tsc) -> None:
     text = "WHILE(NOT KEY_UP);SHOW(PAD_X);W(0.1);END_WHILE"
     result = tsc("run", "-e", text, "--sensor", "KEY_UP=FALSE,TRUE", "--sensor", "pad_x=-12.5")
-    want = ["READ KEY_UP FALSE", "READ PAD_X -12.5", "SHOW -12.5"]
+    expected = ["READ KEY_UP FALSE", "READ PAD_X -12.5", "SHOW -12.5"]
     assert result.out.split("\n")[:-1] == [
-        *(f"0 {row}" for row in want), "100 READ KEY_UP TRUE", "100 DONE",
+        *(f"0 {row}" for row in expected), "100 READ KEY_UP TRUE", "100 DONE",
     ]  # fmt: skip
     tsc("run", "-e", text, "--sensor", "PAD_X=101").gives(2, "-100 to 100")
     tsc("run", "-e", text, "--sensor", "KEY_UPP=TRUE").gives(2, "KEY_UP")
@@ -293,23 +293,24 @@ def test_a_sketch_has_no_remote_control(tsc: Tsc) -> None:
     assert tsc("show", "--arduino", "-e", "KEY_A = 1;SHOW(KEY_A)").code == 0
 
 
-@pytest.mark.parametrize(("robot", "has"), [("tinibot", True), ("grabber", True), ("liner", True),
-                                            ("tinibot2", False), ("tinibot32", True)])  # fmt: skip
+@pytest.mark.parametrize(("robot", "has_room"), [
+    ("tinibot", True), ("grabber", True), ("liner", True), ("tinibot2", False), ("tinibot32", True),
+])  # fmt: skip
 def test_a_robot_without_room_is_reported_before_anything_is_sent(
-    tsc: Tsc, robot: str, has: bool
+    tsc: Tsc, robot: str, has_room: bool
 ) -> None:
     """This is an Uno with discs; commands that send nothing accept the program."""
     text = "SHOW(1)\nF(1, 50) UNTIL(KEY_A)\n"
-    of = ("-e", text, "--robot", robot)
-    for sends in (["compile", "--text"], ["upload", "--virtual"]) if not has else []:
-        result = tsc(*sends, *of)
+    arguments = ("-e", text, "--robot", robot)
+    for sends in (["compile", "--text"], ["upload", "--virtual"]) if not has_room else []:
+        result = tsc(*sends, *arguments)
         assert result.code == 1 and "TS319" in result.err + result.out
         assert "line 2:" in result.err + result.out
     for verb in (["check"], ["show"], ["run", "--max-time", "0.1"]):
-        assert tsc(*verb, *of).code == 0
+        assert tsc(*verb, *arguments).code == 0
     profile = robots.load(robot)
     compilation = fit_to_robot(compile_text(text, profile.kit), profile)
-    assert compilation.is_right == has and bool(compilation.image) == has
+    assert compilation.is_right == has_room and bool(compilation.image) == has_room
     mine = fit_to_robot(compile_text("KEY_A = 1;SHOW(KEY_A)", profile.kit), profile)
     assert mine.is_right and mine.image
 
@@ -333,7 +334,7 @@ def test_the_example_runs_and_matches_the_documents() -> None:
 
 def test_a_stick_at_rest_may_be_compared() -> None:
     """At rest it reads exactly 0, and hardly ever any other number."""
-    asked_text = "LOOP(FOREVER);IF(PAD_X = {});SHOW(1);ENDIF;W(1);END_LOOP"
-    assert not compile_text(asked_text.format(0), TINIBOT).diagnostics
-    assert codes_of(compile_text(asked_text.format(50), TINIBOT)) == [codes.EXACT.number]
+    template = "LOOP(FOREVER);IF(PAD_X = {});SHOW(1);ENDIF;W(1);END_LOOP"
+    assert not compile_text(template.format(0), TINIBOT).diagnostics
+    assert codes_of(compile_text(template.format(50), TINIBOT)) == [codes.EXACT.number]
     assert REMOTE[-1].kind == NUMBER

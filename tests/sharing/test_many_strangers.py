@@ -203,7 +203,7 @@ def test_the_studio_serves_its_page_among_many_strangers() -> None:
         assert usage_after.memory_kb <= usage_before.memory_kb + ALLOWED_GROWTH_KB, kind
 
 
-def campaign(count: int) -> None:
+def run_campaign(count: int) -> None:
     print("| who comes | where | open files before, meanwhile, after | KB before, after |")
     print("|---|---|---|---|")
     of_robots = ((kind, *row) for kind in KINDS for row in attack(kind, count))
@@ -217,4 +217,4 @@ def campaign(count: int) -> None:
 
 
 if __name__ == "__main__":
-    campaign(int(sys.argv[1]) if len(sys.argv) > 1 else 10_000)
+    run_campaign(int(sys.argv[1]) if len(sys.argv) > 1 else 10_000)

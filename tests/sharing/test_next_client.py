@@ -176,9 +176,9 @@ def desk(monkeypatch: pytest.MonkeyPatch) -> Iterator[Desk]:
 
 def upload(text: str, is_detached: bool = False) -> Json:
     image = image_of(text)
-    given_fields = image._asdict() | {"isa": bytes(image.isa)}
+    image_fields = image._asdict() | {"isa": bytes(image.isa)}
     answer = {
-        k: value.hex() if isinstance(value, bytes) else value for k, value in given_fields.items()
+        k: value.hex() if isinstance(value, bytes) else value for k, value in image_fields.items()
     }
     return {**answer, "runs": True, "saves": False, "is_detached": is_detached, "kit": 0}
 
@@ -205,8 +205,8 @@ def send_request(rng: random.Random, client: Client, verb: str) -> None:
         code = image_of(f"SI|{MARK}F({seconds}, 30)").code
         client.asks("live", code=code.hex(), kit=TINIBOT.fingerprint)
     else:
-        given_fields: dict[str, Json] = {"start": {"is_detached": False}, "trim": {"trim": ""}}
-        client.asks(verb, **given_fields.get(verb, {}))
+        fields_by_verb: dict[str, Json] = {"start": {"is_detached": False}, "trim": {"trim": ""}}
+        client.asks(verb, **fields_by_verb.get(verb, {}))
 
 
 def stop_and_leave(client: Client) -> None:
@@ -292,11 +292,11 @@ def check(seed: int, monkeypatch: pytest.MonkeyPatch) -> str:
         end_name = play_first_client(random.Random(seed), at)
         heard_lines, actions = play_second_client(random.Random(-seed), at)
     with desk(monkeypatch) as at:
-        wanted_lines, action_lines = play_second_client(random.Random(-seed), at)
+        expected_lines, action_lines = play_second_client(random.Random(-seed), at)
     explanation = (
-        f"seed {seed} {end_name}\n{heard_lines}\n{actions}\nnot\n{wanted_lines}\n{action_lines}"
+        f"seed {seed} {end_name}\n{heard_lines}\n{actions}\nnot\n{expected_lines}\n{action_lines}"
     )
-    assert actions == action_lines and heard_lines == wanted_lines, explanation
+    assert actions == action_lines and heard_lines == expected_lines, explanation
     return end_name if len(action_lines) > 1 else "little"
 
 
@@ -363,7 +363,7 @@ def test_a_client_that_reads_nothing_has_a_bounded_queue_or_is_dropped(
     name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     event = DROPPED_EVENTS.get(name, StoppedEvent(1))
-    most_bytes = 1000 + (
+    max_bytes = 1000 + (
         server_of.FULL_BYTES if name in DROPPED_EVENTS else server_of.TOO_FULL_BYTES
     )
     with desk(monkeypatch) as made_desk:
@@ -377,7 +377,7 @@ def test_a_client_that_reads_nothing_has_a_bounded_queue_or_is_dropped(
         for _ in range(40):
             made_desk.server._on_events([(0, event)] * 1000)
             made_desk.server._attend()
-            assert len(served.output) <= most_bytes
+            assert len(served.output) <= max_bytes
         assert (served in made_desk.server._clients) == (name in DROPPED_EVENTS)
 
 

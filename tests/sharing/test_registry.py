@@ -44,9 +44,9 @@ def dead() -> Registration:
 
 
 def call_at_line(
-    wanted_line: int, action: Callable[[], object], runs: Callable[[], object]
+    expected_line: int, action: Callable[[], object], runs: Callable[[], object]
 ) -> bool:
-    """Call `runs`, and `action` just before its line number `wanted_line` in the registry. Return
+    """Call `runs`, and `action` just before its line number `expected_line` in the registry. Return
     whether it has so many lines."""
     lines = 0
 
@@ -56,7 +56,7 @@ def call_at_line(
             return None
         if event == "line":
             lines += 1
-            if lines == wanted_line:
+            if lines == expected_line:
                 sys.settrace(None)
                 action()
         return trace
@@ -67,7 +67,7 @@ def call_at_line(
         runs()
     finally:
         sys.settrace(gettrace_before)
-    return lines >= wanted_line
+    return lines >= expected_line
 
 
 def each_line(
@@ -75,13 +75,13 @@ def each_line(
 ) -> Iterator[bool]:
     """Run it with something that happens at its first line, its second, and so on, until it has no
     more lines; yield each time whether it has happened."""
-    wanted_line, is_more = 0, True
+    expected_line, is_more = 0, True
     while is_more:
-        wanted_line += 1
+        expected_line += 1
         action, runs = prepare()
-        is_more = call_at_line(wanted_line, action, runs)
+        is_more = call_at_line(expected_line, action, runs)
         yield is_more
-    assert wanted_line > 5
+    assert expected_line > 5
 
 
 @pytest.mark.parametrize("other_action", ["tidies", "leaves"])
@@ -127,7 +127,7 @@ def check_one_owner(owners: list[IO[bytes] | None]) -> None:
 
 
 def test_a_lock_has_one_owner_in_any_interleaving() -> None:
-    def leftover() -> None:
+    def leave_lock_file() -> None:
         registry.lock_path(PORT).write_bytes(b"")  # left by a command that was killed
 
     registry._make_folder()
@@ -141,7 +141,7 @@ def test_a_lock_has_one_owner_in_any_interleaving() -> None:
                 runs: str = runs, event: str = event, owners: list[IO[bytes] | None] = owners
             ) -> tuple[Callable[[], object], Callable[[], object]]:
                 owners.clear()
-                leftover()
+                leave_lock_file()
                 owned_io = lock() if event == "is let go" or runs == "lets go" else None
                 owners.append(owned_io)
 

@@ -133,9 +133,9 @@ NOD_MESSAGE = Message(
 
 
 def nod(
-    self: Requester, times: int, turn: int, which: int, data: bytes
+    self: Requester, times: int, turn: int, place: int, data: bytes
 ) -> PendingRequest[EmptyReply]:
-    return self._ask("nod", EmptyReply, times=times, turn=turn, which=which, said=data)
+    return self._ask("nod", EmptyReply, times=times, turn=turn, which=place, said=data)
 
 
 @pytest.fixture
@@ -154,8 +154,8 @@ def test_a_message_of_the_table_and_its_method_are_a_request(values: tuple[Any, 
     request_maker(MethodCall("nod", values).message(), 700)(session)
     ((name, passed_arguments, _),) = session.method_calls
     assert (name, passed_arguments) == ("nod", values)
-    given_fields = dict(zip((field.name for field in NOD_MESSAGE.request), values, strict=True))
-    assert next(exchange_by_name("nod")(Mock(), **given_fields)) == Request("NOD", given_fields)
+    nod_fields = dict(zip((field.name for field in NOD_MESSAGE.request), values, strict=True))
+    assert next(exchange_by_name("nod")(Mock(), **nod_fields)) == Request("NOD", nod_fields)
 
 
 @pytest.mark.usefixtures("_knows_nod")

@@ -200,11 +200,11 @@ def test_a_late_end_event_takes_no_owner_from_the_next_run(
 
 
 @pytest.mark.parametrize(
-    ("asked_text", "is_stopped"),
+    ("request_kind", "is_stopped"),
     [("start", True), ("detached", False), ("ping", False), ("over", False), ("begun", True)],
 )
 def test_a_run_that_begins_while_its_server_leaves_is_stopped(
-    asked_text: str, is_stopped: bool, line: FakeLine, monkeypatch: pytest.MonkeyPatch
+    request_kind: str, is_stopped: bool, line: FakeLine, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Two uploads at once: the first is replaced by its own client, and leaves."""
     monkeypatch.setattr(opening, "connection_to", lambda *_: line)
@@ -213,14 +213,14 @@ def test_a_run_that_begins_while_its_server_leaves_is_stopped(
     command = join(PORT, "upload")
     assert command is not None
     with closing(command):
-        if asked_text == "ping":
+        if request_kind == "ping":
             command.begin(lambda requests: requests.ping())
             until(lambda: bool(line.requests), "the request arrives")
         else:
-            send_start(command, line, asked_text == "detached")
-        if asked_text in ("over", "begun"):
+            send_start(command, line, request_kind == "detached")
+        if request_kind in ("over", "begun"):
             line.begin_run()
-            line.is_running = asked_text == "begun"
+            line.is_running = request_kind == "begun"
         client.close()
     assert line.stops == is_stopped
     assert line.is_closed

@@ -129,7 +129,7 @@ def test_a_client_may_use_a_different_robot_profile(pty_robot: PtyRobot) -> None
     command = Command("monitor", "--port", pty_robot.port, "--robot", "grabber")
     assert command.process.stderr
     command.process.stderr.readline()  # waits until it watches
-    pty_robot.ask(lambda robot: robot.sense(0, 0, 42_000))
+    pty_robot.ask(lambda robot: robot.set_readings(0, 0, 42_000))
     assert "DISTANCE 42" in on(pty_robot, "live", "SHOW(DISTANCE)").out
     on(pty_robot, "live", "GRIPPER(90)", "--robot", "grabber").gives(3, "--robot tinibot")
     on(pty_robot, "upload", "-e", "SHOW(LINE_L)", "--robot", "liner").gives(3, "--robot tinibot")
@@ -204,10 +204,10 @@ def test_a_robot_stops_without_the_command_that_has_started_it(
         (signal.SIGKILL, 900), (signal.SIGTERM, 900), (signal.SIGSTOP, 1500),
     ):  # fmt: skip
         command = start_endless_upload(pty_robot)
-        gone_ms = pty_robot.robot_ms
+        left_ms = pty_robot.robot_ms
         command.signal(number)
         pty_robot.until(lambda: not pty_robot.moves, "it stops by itself")
-        assert int(pty_robot.timed_actions[-1].split()[0]) <= gone_ms + within_ms, number
+        assert int(pty_robot.timed_actions[-1].split()[0]) <= left_ms + within_ms, number
         on(pty_robot, "upload", "-e", "SI|F(0.1, 30)").gives(0, "")  # others drive
         command.kill()
 

@@ -104,7 +104,7 @@ def with_wide_kit() -> Robot:
 WIDE_NAMES = ("TEMPERATURE", "TOUCH", "LINE", "GRIPPER", "LIFT", "LED")
 
 
-class Wanted(NamedTuple):
+class ExpectedRun(NamedTuple):
     """The content of a trace, as signals."""
 
     motors: Signal
@@ -115,28 +115,28 @@ class Wanted(NamedTuple):
     is_cut: bool
 
 
-def parse_trace(trace: str) -> Wanted:
-    expected = Wanted([(0.0, (0, 0))], [(0.0, (0,))], {}, [], 0.0, False)
+def parse_trace(trace: str) -> ExpectedRun:
+    parsed_run = ExpectedRun([(0.0, (0, 0))], [(0.0, (0,))], {}, [], 0.0, False)
     for line in trace.splitlines():
-        ms, what, *words = line.split()
-        at_msart_ms = float(ms)
-        if what == "MOTORS":
-            expected.motors.append((at_msart_ms, (int(words[0]), int(words[1]))))
-        elif what == "BEEP" and int(words[1]):
-            expected.tones.append((at_msart_ms, (int(words[0]),)))
-            expected.tones.append((at_msart_ms + int(words[1]), (0,)))
-        elif what == "SET":
+        ms, action, *words = line.split()
+        start_ms = float(ms)
+        if action == "MOTORS":
+            parsed_run.motors.append((start_ms, (int(words[0]), int(words[1]))))
+        elif action == "BEEP" and int(words[1]):
+            parsed_run.tones.append((start_ms, (int(words[0]),)))
+            parsed_run.tones.append((start_ms + int(words[1]), (0,)))
+        elif action == "SET":
             value = {"TRUE": 1, "FALSE": 0}.get(words[1]) if words[1].isalpha() else int(words[1])
             assert value is not None
-            expected.settings.setdefault(words[0], [(0.0, (0,))]).append((at_msart_ms, (value,)))
-        elif what == "SHOW":
-            expected.lines.append((at_msart_ms, words[0]))
-        elif what == "FAULT":
-            expected.lines.append((at_msart_ms, line.split(" ", 1)[1]))
-        expected = expected._replace(end_ms=at_msart_ms, is_cut=what == "LIMIT")
-    if not expected.is_cut:
-        expected.motors.append((expected.end_ms, (0, 0)))
-    return expected
+            parsed_run.settings.setdefault(words[0], [(0.0, (0,))]).append((start_ms, (value,)))
+        elif action == "SHOW":
+            parsed_run.lines.append((start_ms, words[0]))
+        elif action == "FAULT":
+            parsed_run.lines.append((start_ms, line.split(" ", 1)[1]))
+        parsed_run = parsed_run._replace(end_ms=start_ms, is_cut=action == "LIMIT")
+    if not parsed_run.is_cut:
+        parsed_run.motors.append((parsed_run.end_ms, (0, 0)))
+    return parsed_run
 
 
 def spans(signal: Signal, end: float) -> list[tuple[float, float, tuple[int, ...]]]:
@@ -149,26 +149,32 @@ def spans(signal: Signal, end: float) -> list[tuple[float, float, tuple[int, ...
 
 
 def signal_differences(
-    want: Signal, actual: Signal, end: float, near: float, apart: float = 0
+    expected: Signal, actual: Signal, end: float, tolerance_ms: float, tolerance: float = 0
 ) -> list[str]:
-    """Return the difference of two signals; pulses shorter than twice `near` may be missing."""
+    """Return the difference of two signals; pulses below twice `tolerance_ms` may be missing."""
 
     def agree(a: tuple[int, ...], b: tuple[int, ...]) -> bool:
-        return all(abs(x - y) <= apart * max(abs(x), abs(y)) for x, y in zip(a, b, strict=True))
+        return all(abs(x - y) <= tolerance * max(abs(x), abs(y)) for x, y in zip(a, b, strict=True))
 
     found_differences = []
-    expected_spans, actual_spans = spans(want, end), spans(actual, end)
+    expected_spans, actual_spans = spans(expected, end), spans(actual, end)
     for start_ms, end_ms, value in expected_spans:
-        inner = [v for a, u, v in actual_spans if a < end_ms - near and u > start_ms + near]
-        if end_ms - start_ms > 2 * near and not all(agree(value, v) for v in inner):
+        inner = [
+            v
+            for a, u, v in actual_spans
+            if a < end_ms - tolerance_ms and u > start_ms + tolerance_ms
+        ]
+        if end_ms - start_ms > 2 * tolerance_ms and not all(agree(value, v) for v in inner):
             found_differences.append(f"{value} from {start_ms} to {end_ms}, but {inner[:4]}")
     for start_ms, end_ms, value in actual_spans:
         values_around = [
-            v for a, u, v in expected_spans if a < end_ms + near and u > start_ms - near
+            v
+            for a, u, v in expected_spans
+            if a < end_ms + tolerance_ms and u > start_ms - tolerance_ms
         ]
-        if start_ms > end - near:  # events after the end
+        if start_ms > end - tolerance_ms:  # events after the end
             continue
-        if end_ms - start_ms > 2 * near and not any(agree(value, v) for v in values_around):
+        if end_ms - start_ms > 2 * tolerance_ms and not any(agree(value, v) for v in values_around):
             found_differences.append(
                 f"{value} from {start_ms:.1f} to {end_ms:.1f} is not in the trace"
             )
@@ -190,52 +196,52 @@ def differences(
     run: Ran,
     robot: Robot,
     start_ms: float,
-    near: float = NEAR_MS,
-    apart: float = 0,
+    tolerance_ms: float = NEAR_MS,
+    tolerance: float = 0,
 ) -> list[str]:
     """Return the differences between a sketch's run and the trace, with a tolerance for numbers."""
-    want = parse_trace(trace)
-    end = want.end_ms
-    motors = [*want.motors]
+    expected = parse_trace(trace)
+    end = expected.end_ms
+    motors = [*expected.motors]
     found_differences = signal_differences(
-        motors, shift_signal(run.motors, start_ms, (0, 0)), end, near
+        motors, shift_signal(run.motors, start_ms, (0, 0)), end, tolerance_ms
     )
     found_differences += signal_differences(
-        want.tones, shift_signal(run.tones, start_ms, (0,)), end, near, 0.02
+        expected.tones, shift_signal(run.tones, start_ms, (0,)), end, tolerance_ms, 0.02
     )
     for device, wiring in zip(robot.kit.actuators, robot.board.actuators, strict=True):
         signal = shift_signal(run.pins[wiring.pins["pin"]], start_ms, (0,))
-        asked_signal = want.settings.get(device.name, [(0.0, (0,))])
+        settings_signal = expected.settings.get(device.name, [(0.0, (0,))])
         if wiring.driver == "digital":
             low = wiring.settings["yes_is_low"]
             levels: Signal = [
-                (start_ms, ((value[0] ^ low) * 255,)) for start_ms, value in asked_signal
+                (start_ms, ((value[0] ^ low) * 255,)) for start_ms, value in settings_signal
             ]
-            found_differences += signal_differences(levels, signal, end, near)
+            found_differences += signal_differences(levels, signal, end, tolerance_ms)
         elif wiring.driver == "servo":
             found_differences += pulses(
-                device.low, device.high, wiring.settings, asked_signal, signal, end
+                device.low, device.high, wiring.settings, settings_signal, signal, end
             )
-    return found_differences + compare_shows(want, run, apart, near)
+    return found_differences + compare_shows(expected, run, tolerance, tolerance_ms)
 
 
 def pulses(
     low: int,
     high: int,
     settings: Mapping[str, int],
-    asked_signal: Signal,
+    settings_signal: Signal,
     signal: Signal,
     end: float,
 ) -> list[str]:
     """Return the pulses of a servo that do not match its settings."""
     found_differences, low_us, high_us = [], settings["low_us"], settings["high_us"]
-    for k, (start_ms, end_ms, value) in enumerate(spans(asked_signal, end)):
+    for k, (start_ms, end_ms, value) in enumerate(spans(settings_signal, end)):
         lengths_us = [
-            1000 * (gone - came)
-            for came, gone, level in spans(signal, end)
-            if level[0] and came > start_ms + 30 and gone < end_ms - 2
+            1000 * (fall_ms - rise_ms)
+            for rise_ms, fall_ms, level in spans(signal, end)
+            if level[0] and rise_ms > start_ms + 30 and fall_ms < end_ms - 2
         ]
-        if k == 0 and (len(asked_signal) == 1 or asked_signal[1][0] > 0):
+        if k == 0 and (len(settings_signal) == 1 or settings_signal[1][0] > 0):
             if lengths_us:
                 found_differences.append(f"pulses before a SET: {lengths_us[:3]}")
             continue
@@ -247,24 +253,26 @@ def pulses(
     return found_differences
 
 
-def compare_shows(want: Wanted, run: Ran, apart: float, near: float) -> list[str]:
+def compare_shows(
+    expected: ExpectedRun, run: Ran, tolerance: float, tolerance_ms: float
+) -> list[str]:
     """Return the superfluous and missing values of SHOW."""
     lines = run.text.split("\r\n")[:-1]
-    questions = [line for _, line in want.lines]
+    questions = [line for _, line in expected.lines]
     common = min(len(lines), len(questions))
-    least = len(questions)
-    if want.is_cut:
-        least = sum(start_ms < want.end_ms - near for start_ms, _ in want.lines)
-    is_same = all(map(_is_line, lines[:common], questions[:common], [apart] * common))
-    if is_same and len(lines) >= least and (want.is_cut or len(lines) == least):
+    min_count = len(questions)
+    if expected.is_cut:
+        min_count = sum(start_ms < expected.end_ms - tolerance_ms for start_ms, _ in expected.lines)
+    is_same = all(map(_is_line, lines[:common], questions[:common], [tolerance] * common))
+    if is_same and len(lines) >= min_count and (expected.is_cut or len(lines) == min_count):
         return []
     return [f"shown {lines[:20]}, not {questions[:20]}"]
 
 
-def _is_line(line: str, asked_text: str, apart: float) -> bool:
-    if line == asked_text or not apart:
-        return line == asked_text
-    return not asked_text[-1:].isalpha() and abs(float(line) - float(asked_text)) <= apart
+def _is_line(line: str, question: str, tolerance: float) -> bool:
+    if line == question or not tolerance:
+        return line == question
+    return not question[-1:].isalpha() and abs(float(line) - float(question)) <= tolerance
 
 
 def sketch(text: str, robot: Robot, language: str = "en") -> str:
@@ -324,19 +332,19 @@ def check(example: Example, robot: Robot, language: str = "en") -> None:
         for device, wiring in zip(robot.kit.sensors, robot.board.sensors, strict=True)
     }
     for name in ("LIGHT_R", "LIGHT_L", "TEMPERATURE", "LINE"):
-        board.count(pins[name]["pin"], [example.counts[name]])
-    board.level(0, pins["TOUCH"]["pin"], not example.counts["TOUCH"])
-    board.echoes(pins["DISTANCE"]["trigger"], pins["DISTANCE"]["echo"], [0])
+        board.set_counts(pins[name]["pin"], [example.counts[name]])
+    board.set_level(0, pins["TOUCH"]["pin"], not example.counts["TOUCH"])
+    board.set_echoes(pins["DISTANCE"]["trigger"], pins["DISTANCE"]["echo"], [0])
     start = 0.5
     if compilation.program.start == "SB":
         start = UP_MS
-        board.level(PRESS_MS, robot.board.start_button, False)
-        board.level(RELEASE_MS, robot.board.start_button, True)
-    want = parse_trace(example.trace)
+        board.set_level(PRESS_MS, robot.board.start_button, False)
+        board.set_level(RELEASE_MS, robot.board.start_button, True)
+    expected = parse_trace(example.trace)
     reads = example.trace.count(" READ DISTANCE ")
-    run = board.run_for(start + want.end_ms + (0 if want.is_cut else PLAIN_MS + 30 * reads))
-    near = nearness(example.trace)
-    found_differences = differences(example.trace, run, robot, start, near)
+    run = board.run_for(start + expected.end_ms + (0 if expected.is_cut else PLAIN_MS + 30 * reads))
+    tolerance_ms = nearness(example.trace)
+    found_differences = differences(example.trace, run, robot, start, tolerance_ms)
     assert not found_differences, (
         f"seed {example.seed}: {found_differences[:3]}\n{example.text}\n{example.trace[:3000]}"
     )

@@ -64,7 +64,7 @@ def run_sketch(text: str, ms: float, robot: Robot | None = None) -> Ran:
     return SketchBoard(robot, sketch(text, robot)).run_for(ms)
 
 
-def agrees(text: str, robot: Robot, echo_us: float, counts: int, seconds: float) -> None:
+def check_agreement(text: str, robot: Robot, echo_us: float, counts: int, seconds: float) -> None:
     """Check that a sketch agrees with the trace, with constant readings."""
     compilation = compile_text(text, robot.kit, "prog.ts")
     assert compilation.program is not None and compilation.is_right
@@ -73,36 +73,36 @@ def agrees(text: str, robot: Robot, echo_us: float, counts: int, seconds: float)
     for device, wiring in zip(robot.kit.sensors, robot.board.sensors, strict=True):
         pins = wiring.pins
         if wiring.driver == "hc_sr04":
-            board.echoes(pins["trigger"], pins["echo"], [echo_us])
+            board.set_echoes(pins["trigger"], pins["echo"], [echo_us])
             readings[device.name] = [round(echo_us * 17.15) if echo_us else 400_000]
         elif wiring.driver == "digital":
-            board.level(0, pins["pin"], bool(wiring.settings["yes_is_low"]) == (counts < 500))
+            board.set_level(0, pins["pin"], bool(wiring.settings["yes_is_low"]) == (counts < 500))
             readings[device.name] = [int(counts >= 500)]
         else:
             count = counts + 40 * (device.name == "LIGHT_L")
-            board.count(pins["pin"], [count])
+            board.set_counts(pins["pin"], [count])
             readings[device.name] = [count * ONE]
     start = START_MS
     if compilation.program.start == "SB":
         start = UP_MS
-        board.level(PRESS_MS, robot.board.start_button, False)
-        board.level(RELEASE_MS, robot.board.start_button, True)
+        board.set_level(PRESS_MS, robot.board.start_button, False)
+        board.set_level(RELEASE_MS, robot.board.start_button, True)
     trace = MACHINES["python"](
         compilation.image, robot.kit, Senses(readings, round(seconds * 1000))
     )
-    want = parse_trace(trace)
-    run = board.run_for(start + want.end_ms + (0 if want.is_cut else 400))
-    near = nearness(trace, echo_us)
-    found_differences = differences(trace, run, robot, start, near, 0.2 if echo_us else 0)
+    expected = parse_trace(trace)
+    run = board.run_for(start + expected.end_ms + (0 if expected.is_cut else 400))
+    tolerance_ms = nearness(trace, echo_us)
+    found_differences = differences(trace, run, robot, start, tolerance_ms, 0.2 if echo_us else 0)
     assert not found_differences, f"{found_differences[:3]}\n{text}\n{trace[:2000]}"
 
 
 @pytest.mark.sampled("echo_us", "path", keep=3)
 @pytest.mark.parametrize("echo_us", [NO_ECHO_US, NEAR_ECHO_US], ids=["far", "near"])
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
-def test_examples(path: Path, echo_us: float) -> None:
+def test_sketches_of_examples_agree(path: Path, echo_us: float) -> None:
     robot = robots.load(example_robot(path))
-    agrees(path.read_text(encoding="utf-8"), robot, echo_us, 300, 2)
+    check_agreement(path.read_text(encoding="utf-8"), robot, echo_us, 300, 2)
 
 
 @pytest.mark.sampled("number", keep=len(ANSWERS) // 10)
@@ -112,7 +112,9 @@ def test_sketches_of_lesson_answers_agree(number: int) -> None:
     liner = robots.load("liner").kit
     robot = robots.load("liner" if not compile_text(text, ROBOT.kit).is_right else "tinibot")
     assert robot.name == "tinibot" or compile_text(text, liner).is_right
-    agrees(text, robot, (NO_ECHO_US, NEAR_ECHO_US)[number % 2], (300, 700)[number // 2 % 2], 2)
+    check_agreement(
+        text, robot, (NO_ECHO_US, NEAR_ECHO_US)[number % 2], (300, 700)[number // 2 % 2], 2
+    )
 
 
 ROBOT, ROBOT_WIDE = robots.load("tinibot"), with_wide_kit()
@@ -120,7 +122,7 @@ ROBOT, ROBOT_WIDE = robots.load("tinibot"), with_wide_kit()
 
 @pytest.mark.sampled("seeds")
 @pytest.mark.parametrize("seeds", [range(k, k + 4) for k in range(0, 24, 4)], ids=str)
-def test_random_programs(seeds: range) -> None:
+def test_random_programs_agree(seeds: range) -> None:
     for seed in seeds:
         check_seed(seed)
 
@@ -171,7 +173,7 @@ def test_servos_that_turn_get_their_pulses() -> None:
 
 def test_gripper_and_lamp_of_a_mega_are_set() -> None:
     robot = robots.load("grabber")
-    agrees(
+    check_agreement(
         "SI|GRIPPER(90);LED(TRUE);W(0.2);GRIPPER(0);LED(FALSE);W(0.2)", robot, NO_ECHO_US, 100, 1
     )
 
@@ -197,7 +199,7 @@ def test_an_echo_is_converted_to_a_distance(distance_cm: int) -> None:
     robot = robots.load("tinibot")
     board = SketchBoard(robot, sketch("SI|DISTANCE;SHOW(DISTANCE)", robot))
     pins = robot.board.sensors[2].pins
-    board.echoes(pins["trigger"], pins["echo"], [distance_cm * 2 / 0.0343])
+    board.set_echoes(pins["trigger"], pins["echo"], [distance_cm * 2 / 0.0343])
     assert abs(float(board.run_for(400).text) - distance_cm) < 0.5
 
 
@@ -207,7 +209,7 @@ def test_two_pings_are_30_ms_apart() -> None:
     text = "SI|DISTANCE;SHOW(ROUND(DISTANCE, 0));DISTANCE;SHOW(ROUND(DISTANCE, 0));W(0.05);"
     board = SketchBoard(robot, sketch(text + "DISTANCE;SHOW(ROUND(DISTANCE, 0))", robot))
     pins = robot.board.sensors[2].pins
-    board.echoes(pins["trigger"], pins["echo"], [20 * 2 / 0.0343, 40 * 2 / 0.0343])
+    board.set_echoes(pins["trigger"], pins["echo"], [20 * 2 / 0.0343, 40 * 2 / 0.0343])
     assert board.run_for(500).text.split() == ["20", "20", "40"]
 
 
@@ -237,7 +239,7 @@ def test_a_button_starts_and_stops() -> None:
         [actuator.pins["pin"] for actuator in robot.board.actuators],
     )
     for ms, is_high in ((100, False), (200, True), (500, False), (600, True)):
-        board.level(ms, button, is_high)
+        board.set_level(ms, button, is_high)
     run = board.run_for(900)
     assert [
         value for start_ms, end_ms, value in spans(run.motors, 899) if end_ms - start_ms > 5
@@ -257,8 +259,8 @@ def test_a_button_starts_and_stops() -> None:
 def test_a_spike_starts_nothing() -> None:
     robot = robots.load("tinibot")
     board = SketchBoard(robot, sketch("SB|F(1, 50)", robot))
-    board.level(100, robot.board.start_button, False)
-    board.level(110, robot.board.start_button, True)
+    board.set_level(100, robot.board.start_button, False)
+    board.set_level(110, robot.board.start_button, True)
     assert {value for _, value in board.run_for(300).motors} == {(0, 0)}
 
 

@@ -185,8 +185,9 @@ def test_names_of_cpp_and_of_the_core_can_be_variables(first: int) -> None:
     """Each sixth reserved name, and what looks like a macro of the core."""
     words = sorted(word.upper() for word in RESERVED if word.isalpha())[first::6]
     kit = robots.load("tinibot").kit
-    odd = ("A0", "B1", "PI", "HIGH", "LOW", "PORTB", "ADC", "NULL", "SPEED", "FIRST1", "INPUT")
-    usable = [word for word in (*odd, *words) if compile_text(f"{word} = 1", kit).is_right]
+    core_names = ("A0", "B1", "PI", "HIGH", "LOW", "PORTB", "ADC", "NULL", "SPEED", "FIRST1",
+                  "INPUT")  # fmt: skip
+    usable = [word for word in (*core_names, *words) if compile_text(f"{word} = 1", kit).is_right]
     for start in range(0, len(usable), 30):
         program = ";".join(f"{word} = 1" for word in usable[start : start + 30])
         build_sketch(sketch(f"{program};W({usable[start]})"), "uno")

@@ -124,11 +124,11 @@ class Server {
 // One connection of the page: asks, presses and an end; returns what is seen of it. Where the server `dies`, it has been met.
 async function story(random, bad, isWild = false, dies = false) {
   const ends = [];
-  const heard = [];
+  const heardItems = [];
   let over = 0;
   server.takes_ms = () => (random() < 0.5 ? 1 : Math.floor(random() * 800));
   Object.assign(server, { tooSoon: 0, isUnderWay: false, beat_at_ms: -1e9, lost_at_ms: -1e9, wanted_at_ms: -1e9 });
-  let met = 0;
+  let metCount = 0;
   let wasMet = false;
   let lost = 0;
   server.loses = (isAnswer) => {
@@ -140,8 +140,8 @@ async function story(random, bad, isWild = false, dies = false) {
   server.late_ms = () => (bad && random() < 0.2 ? Math.floor(random() * (isWild ? 2500 : 400)) : 1);
   server.lost_ms = () => (bad && random() < 0.5 ? Math.floor(random() * 600) : 1);
   server.again = bad ? 0.1 : 0;
-  const robot = new HostRobot({ onEvent: (event) => heard.push(event.event), onEnd: () => (over += 1) });
-  robot.connect('p', 'tinibot', 'en').then(() => (wasMet = true)).catch(() => {}).finally(() => (met += 1));
+  const robot = new HostRobot({ onEvent: (event) => heardItems.push(event.event), onEnd: () => (over += 1) });
+  robot.connect('p', 'tinibot', 'en').then(() => (wasMet = true)).catch(() => {}).finally(() => (metCount += 1));
   await until(now_ms + 3000);
   const asks = 1 + Math.floor(random() * 12);
   let presses = 0;
@@ -152,7 +152,7 @@ async function story(random, bad, isWild = false, dies = false) {
     const counts = () => (ends[k] += 1);
     robot.ask({ what: `${server.name} ${k}` }).then((answer) => {
       counts();
-      if (answer.what !== `${server.name} ${k}`) heard.push(`another's answer: ${answer.what}`);
+      if (answer.what !== `${server.name} ${k}`) heardItems.push(`another's answer: ${answer.what}`);
     }, counts);
     for (let presses = Math.floor(random() * 3); presses > 0; presses -= 1) {
       words.push(0);
@@ -171,10 +171,10 @@ async function story(random, bad, isWild = false, dies = false) {
   const isGone = bad < 1 || robot.isOver; // nothing arrives, and that is known
   robot.leave();
   await passes();
-  const before = JSON.stringify([ends, heard, over]);
+  const before = JSON.stringify([ends, heardItems, over]);
   await until(now_ms + 10_000);
-  const isQuiet = JSON.stringify([ends, heard, over]) === before;
-  return { words, met, wasMet, isThere, isGone, over, ends, presses, heard, isQuiet, timers: timers.length, tooSoon: server.tooSoon };
+  const isQuiet = JSON.stringify([ends, heardItems, over]) === before;
+  return { words, met: metCount, wasMet, isThere, isGone, over, ends, presses, heard: heardItems, isQuiet, timers: timers.length, tooSoon: server.tooSoon };
 }
 
 for (let seed = 0; seed < seeds; seed += 1) {

@@ -79,13 +79,13 @@ def compare(page: Page, count: int, seed: int) -> int:
     texts = [
         oracle_programs.program(random.Random(seed + k), oracle.PAPER_KIT) for k in range(count)
     ]
-    wanted_images = [compile_to_hex(text) for text in texts]
+    expected_images = [compile_to_hex(text) for text in texts]
     from_blocks = images(page, texts_through_blocks(page, texts))
-    rows = zip(texts, wanted_images, images(page, texts), from_blocks, strict=True)
+    rows = zip(texts, expected_images, images(page, texts), from_blocks, strict=True)
     for k, (text, image, from_text, from_block) in enumerate(rows):
         assert from_text == image, f"seed {seed + k}, from its text:\n{text}"
         assert from_block == image, f"seed {seed + k}, from its blocks:\n{text}"
-    return sum(bool(image) for image in wanted_images)
+    return sum(bool(image) for image in expected_images)
 
 
 def main() -> int:

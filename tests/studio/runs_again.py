@@ -38,10 +38,10 @@ def record_run(number: int, is_held: bool = False) -> tuple[bytes, list[Row]]:
         if compilation.image:
             break
     world = rng.choice(worlds.names())
-    given_readings = {0: [rng.randrange(2, 100) * 1000, 1000]} if rng.random() < 0.3 else {}
+    recorded_readings = {0: [rng.randrange(2, 100) * 1000, 1000]} if rng.random() < 0.3 else {}
     if profile.kit.sensors[0].is_yes_no:
-        given_readings = {}
-    settings = Settings(seed=number + 1, given_readings=given_readings)
+        recorded_readings = {}
+    settings = Settings(seed=number + 1, given_readings=recorded_readings)
     run = Simulation(profile.name, worlds.load(world), compilation.image, settings=settings)
     code = unpack(compilation.image).code
     if is_held:
@@ -55,7 +55,7 @@ def record_run(number: int, is_held: bool = False) -> tuple[bytes, list[Row]]:
     rows, end_ms = run.rows(), run.robot.now_ms
     run.close()
     header = header_line(VIRTUAL, text, profile, checksum(compilation.image), world=world,
-                        seed=number + 1, given_readings=given_readings)  # fmt: skip
+                        seed=number + 1, given_readings=recorded_readings)  # fmt: skip
     output_rows = [row for row in rows if not row.is_input]
     return encode(header, rows, end_ms).encode(), output_rows
 

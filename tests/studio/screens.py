@@ -25,18 +25,18 @@ def _write(page: Page, text: str) -> None:
     write(page, text)
 
 
-def _blocks(page: Page) -> None:
+def _show_blocks(page: Page) -> None:
     page.click("#start_write")
     page.click("#view_blocks")
     wait_for_blocks(page)
 
 
-def _wrong(page: Page) -> None:
+def _show_mistake(page: Page) -> None:
     page.click("#words")
     _write(page, WRONG_PROGRAM)
 
 
-def _running(page: Page) -> None:
+def _start_run(page: Page) -> None:
     _write(page, ";".join(f"V{k} = {k}" for k in range(12)) + ";F(3, 80);SHOW(1 / 0)")
     page.select_option("#world", "maze")
     page.select_option("#speed", "0.1")
@@ -64,13 +64,13 @@ def _part(index: int) -> Show:
     return select_part
 
 
-def _floor(page: Page) -> None:
+def _show_floor(page: Page) -> None:
     page.click("#seen_arena")
     page.click("#world_draw")
     _part(0)(page)
 
 
-def _lesson(page: Page) -> None:
+def _show_lesson(page: Page) -> None:
     page.click("#world_done")
     page.select_option("#world", "obstacles")
     page.click("#side_lessons")
@@ -85,19 +85,19 @@ def _check_lesson(page: Page) -> None:
     page.evaluate("Promise.all(arena.getAnimations().map((each) => each.finished))")  # a bump
 
 
-def _real(page: Page) -> None:
+def _show_real_robot(page: Page) -> None:
     page.click("#lesson_hint summary")
     page.click("#side_real")
 
 
-def _programs(page: Page) -> None:
+def _show_programs(page: Page) -> None:
     page.click("#link_teacher summary")
     page.click("#side_virtual")
     page.click("#my_programs")
     page.locator("#programs:not([data-shared=asked])").wait_for()
 
 
-def _own_programs(page: Page) -> None:
+def _show_own_programs(page: Page) -> None:
     page.click("#programs_close")
     page.click("#home")
     page.locator("#start_programs li").first.wait_for()
@@ -105,26 +105,26 @@ def _own_programs(page: Page) -> None:
 
 SCREENS: dict[str, Show] = {
     "start": lambda page: page.locator("#pictures").wait_for(),
-    "blocks": _blocks,
+    "blocks": _show_blocks,
     "toolbox": lambda page: page.locator(".blocklyToolboxCategory").first.click(),
     "words": lambda page: page.click("#words"),
-    "wrong": _wrong,
+    "wrong": _show_mistake,
     "waiting blocks": lambda page: page.click("#view_blocks"),
-    "running": _running,
+    "running": _start_run,
     "paused": _pause_run,
     "driven": _drive_run,
     "trace": lambda page: page.click("#seen_trace"),
     "plot": lambda page: page.click("#seen_plot"),
-    "floor": _floor,
+    "floor": _show_floor,
     "drawing": _part(1),
     "box": _part(2),
     "flag": _part(-1),
-    "lesson": _lesson,
+    "lesson": _show_lesson,
     "checked": _check_lesson,
-    "real": _real,
+    "real": _show_real_robot,
     "teacher": lambda page: page.click("#link_teacher summary"),
-    "programs": _programs,
-    "own programs": _own_programs,
+    "programs": _show_programs,
+    "own programs": _show_own_programs,
 }
 
 

@@ -165,20 +165,20 @@ const PARTS = {
       device.isGone = device.isStuck = false;
       device.taken = [];
       device.signals = [];
-      const given = [], heard = [], ends = [], written = [];
-      let gone = 0, settled = 0;
+      const lineBytes = [], heardBytes = [], ends = [], written = [];
+      let goneCount = 0, settledCount = 0;
       const port = new SerialPort(device, 9600);
-      await Promise.all([port.open((bytes) => heard.push(...bytes), () => { gone += 1; }), passes(10)]);
+      await Promise.all([port.open((bytes) => heardBytes.push(...bytes), () => { goneCount += 1; }), passes(10)]);
       for (let k = random.below(8); k > 0; k -= 1) {
         const act = random.of(isGood ? ['hears', 'writes', 'reset'] : ['hears', 'hears', 'errs', 'errs', 'writes', 'reset', 'goes', 'stuck']);
         if (act === 'hears') {
           const bytes = Array.from({ length: 1 + random.below(5) }, () => random.below(256));
           device.gives(bytes);
-          given.push(...bytes);
+          lineBytes.push(...bytes);
         } else if (act === 'errs') device.errs(random.of(['FramingError', 'ParityError', 'BreakError', 'BufferOverrunError']));
         else if (act === 'writes') {
           written.push(k);
-          port.write(new Uint8Array([k])).catch(() => ends.push('failed')).finally(() => { settled += 1; });
+          port.write(new Uint8Array([k])).catch(() => ends.push('failed')).finally(() => { settledCount += 1; });
         } else if (act === 'reset') port.reset();
         else if (act === 'stuck') device.isStuck = true;
         else device.goes();
@@ -186,20 +186,20 @@ const PARTS = {
         await passes(act === 'reset' ? 400 : 5);
         if (device.isGone) break;
       }
-      if (`${heard}` !== `${given}`) throw new Error(`${given} were on the line, and ${heard} are heard`);
-      if (gone !== Number(device.isGone)) throw new Error(`it is ${device.isGone ? '' : 'not '}gone, which is said ${gone} times`);
+      if (`${heardBytes}` !== `${lineBytes}`) throw new Error(`${lineBytes} were on the line, and ${heardBytes} are heard`);
+      if (goneCount !== Number(device.isGone)) throw new Error(`it is ${device.isGone ? '' : 'not '}gone, which is said ${goneCount} times`);
       if (!device.isStuck && !device.isGone && `${device.taken}` !== `${written}`) throw new Error(`${written} are written, and ${device.taken} taken`);
       if (ends.filter((end) => end === 'reset').length * 2 !== device.signals.length) throw new Error('a board is restarted otherwise than asked');
       const opened = new SerialPort(device, 9600).open(() => {}, () => {}).catch(({ reason }) => reason);
       await passes(4000);
       if (await opened !== 'port_busy') throw new Error(`a port that is open is ${await opened}`);
-      if (settled !== written.length) throw new Error('a write has no end');
+      if (settledCount !== written.length) throw new Error('a write has no end');
       let isFree = false;
       port.close().then(() => { isFree = true; }, () => {});
       await passes(10_000);
       if (!isFree || device.isOpen) throw new Error(`it was closed after ${ends}, and is not free`);
-      if (gone !== Number(device.isGone)) throw new Error('who closes it hears that it is gone');
-      return { ends, seen: [heard, device.taken, device.signals] };
+      if (goneCount !== Number(device.isGone)) throw new Error('who closes it hears that it is gone');
+      return { ends, seen: [heardBytes, device.taken, device.signals] };
     };
   },
 
@@ -232,17 +232,17 @@ const PARTS = {
         const breakpoints = [random.below(9)], isUnderWay = ['running', 'paused'].includes(simulator.phase);
         const before = notes.length;
         simulator.setBreakpoints(breakpoints);
-        if (isUnderWay) told = async () => {
+        if (isUnderWay) checkPoints = async () => {
           for (let k = 0; k < 50 && !simulator.failure && !notes.slice(before).some((note) => note.do === 'breakpoints'); k += 1) await passes(20);
           if (!simulator.failure && `${notes.slice(before).findLast((note) => note.do === 'breakpoints')?.breakpoints}` !== `${breakpoints}`) throw new Error('breakpoints of a run that is under way are not set');
         };
       };
-      let told = async () => {};
+      let checkPoints = async () => {};
       for (let k = random.below(8); k > 0; k -= 1) {
         random.of([() => simulator.pause(), () => simulator.resume(), () => simulator.step(), () => simulator.pressButton(), setPoints, () => {}])();
         await passes(random.below(400));
-        await told();
-        told = async () => {};
+        await checkPoints();
+        checkPoints = async () => {};
       }
       const end = random.of(['stop', 'leave', 'wait']);
       await passes(end === 'wait' ? 4000 : 0);
@@ -302,10 +302,10 @@ const PARTS = {
       [work.text, work.robot, dataset['state'], dataset['image']] = ['F(1)', 'tinibot', 'stale', ''];
       pageState.ownRobot.set({ name: '', colour: 0 });
       window.localStorage.removeItem('tiniscript.lessons');
-      const has = { fields: {}, place: -1, isUp: false };
+      const classState = { fields: {}, place: -1, isUp: false };
       let hasOpened = '', isOffered = !isGood;
       openedTexts = [];
-      const wanted = { place: -1, isUp: false };
+      const pressedState = { place: -1, isUp: false };
       let turns = 0;
       let joins = 0;
       let over = '';
@@ -313,7 +313,7 @@ const PARTS = {
       let isCalm = false; // nothing is lost
       let ends = 'goes on';
       const end = isGood ? 'goes on' : 'removed';
-      const told = isGood && { key: 'one', text: 'given', robot: 'tinibot', lessons: [] };
+      const returnedWork = isGood && { key: 'one', text: 'given', robot: 'tinibot', lessons: [] };
       room = {
         async asked(by, request) {
           if (request.do === 'join') {
@@ -322,7 +322,7 @@ const PARTS = {
             return answers({ token });
           }
           if (by !== token || !by) { // a look of the class before
-            if (request.do === 'stop') strays += 1;
+            if (request.do === 'stop') strayStopCount += 1;
             await later(1);
             return { ok: false, status: 403 };
           }
@@ -333,7 +333,7 @@ const PARTS = {
             return answers({ stops: stops.length });
           }
           if (request.do === 'run') {
-            given.push(request.asked);
+            givenRuns.push(request.asked);
             return answers({});
           }
           const { opened, ...asked } = request;
@@ -346,13 +346,13 @@ const PARTS = {
           if (lost === 'look') throw new Broken();
           if (isOut) return { ok: false, status: 403 };
           if (isOffered && opened === handout?.key) hasOpened = opened;
-          const { do: _, took, wants, hand: isUp = has.isUp, ...fields } = asked;
-          Object.assign(has.fields, fields);
-          has.isUp = isUp;
-          const before = has.place;
-          if (wants !== undefined) has.place = wants ? 0 : -1;
-          if (has.place === 0 && before !== 0) turns += 1;
-          const answer = over ? { over } : { ...group, place: has.place, waiting: 0, robots: 1, robot: '', left_s: 9, name: 'Ana', hand: has.isUp, ...(told && !took && { given: told }), ...(isOffered && handout && hasOpened !== handout.key && { handout }) };
+          const { do: _, took, wants, hand: isUp = classState.isUp, ...fields } = asked;
+          Object.assign(classState.fields, fields);
+          classState.isUp = isUp;
+          const before = classState.place;
+          if (wants !== undefined) classState.place = wants ? 0 : -1;
+          if (classState.place === 0 && before !== 0) turns += 1;
+          const answer = over ? { over } : { ...group, place: classState.place, waiting: 0, robots: 1, robot: '', left_s: 9, name: 'Ana', hand: classState.isUp, ...(returnedWork && !took && { given: returnedWork }), ...(isOffered && handout && hasOpened !== handout.key && { handout }) };
           await travels();
           if (lost) throw new Broken();
           if (!over) [driver, runAsked] = [answer.driver, answer.run];
@@ -361,13 +361,13 @@ const PARTS = {
       };
       const group = { groups: [], driver: '', run: '' }; // as the class tells of it
       let driver = '', runAsked = ''; // as the page has heard
-      let strays = 0; // stops that no class has
-      const stops = [], given = [];
+      let strayStopCount = 0; // stops that no class has
+      const stops = [], givenRuns = [];
       const pressesStop = async () => {
-        const before = stops.length + strays, isDriven = driver !== '' && !over && ends === 'goes on';
+        const before = stops.length + strayStopCount, isDriven = driver !== '' && !over && ends === 'goes on';
         page.byId('stop').click();
         await settles();
-        if (stops.length + strays - before !== Number(isDriven)) throw new Error(`${stops.length + strays - before} stops are sent, and ${driver || 'nobody'} drives`);
+        if (stops.length + strayStopCount - before !== Number(isDriven)) throw new Error(`${stops.length + strayStopCount - before} stops are sent, and ${driver || 'nobody'} drives`);
       };
       const changes = {
         writes: () => { work.text = `F(${random.below(2)})`; },
@@ -379,9 +379,9 @@ const PARTS = {
       const handsOut = () => { handout = { key: `key ${(entries += 1)}`, lesson: 0, text: `H(${entries})`, robot: 'tinibot' }; };
       const presses = {
         ...changes,
-        ask: () => { wanted.place = 0; ask.click(); },
-        quit: () => { wanted.place = -1; quit.click(); },
-        hand: () => { wanted.isUp = hand.attributes['aria-pressed'] !== 'true'; hand.click(); },
+        ask: () => { pressedState.place = 0; ask.click(); },
+        quit: () => { pressedState.place = -1; quit.click(); },
+        hand: () => { pressedState.isUp = hand.attributes['aria-pressed'] !== 'true'; hand.click(); },
         groups: () => { group.groups = ['red', 'tan'].slice(random.below(3)).map((name) => ({ name, members: ['Luz', 'Teo'].slice(random.below(3)) })); },
         drives: () => { group.driver = random.of(['', 'Luz']); },
         run: () => { group.run = `run ${(entries += 1)}`; },
@@ -422,17 +422,17 @@ const PARTS = {
       const seen = notes.map((item) => structuredClone(item));
       const countNotes = (note) => notes.filter((item) => item === note || item[0] === note).length;
       for (const [name, value] of Object.entries(shown())) {
-        if (JSON.stringify(has.fields[name]) !== JSON.stringify(value)) throw new Error(`the teacher sees ${name} ${JSON.stringify(has.fields[name])}, and it is ${JSON.stringify(value)}`);
+        if (JSON.stringify(classState.fields[name]) !== JSON.stringify(value)) throw new Error(`the teacher sees ${name} ${JSON.stringify(classState.fields[name])}, and it is ${JSON.stringify(value)}`);
       }
-      if (has.place !== wanted.place || has.isUp !== wanted.isUp) throw new Error(`not what was pressed last: ${JSON.stringify([has, wanted])}`);
+      if (classState.place !== pressedState.place || classState.isUp !== pressedState.isUp) throw new Error(`not what was pressed last: ${JSON.stringify([classState, pressedState])}`);
       if (countNotes('to the robot') > turns || countNotes('given') > 1) throw new Error(`${countNotes('to the robot')} times to the robot in ${turns} turns, given ${countNotes('given')} times`);
       await pressesStop();
       const listed = page.byId('class').children[0].children[2].children.map(({ children: [name] }) => name);
       const wantedGroups = group.groups.map(({ name, members }) => (members.length ? `${name} (${members.join(', ')})` : name));
       if (page.byId('side_class').hidden || `${listed}` !== `${wantedGroups}`) throw new Error(`the groups ${listed} are seen in place of ${wantedGroups}`);
-      if (runAsked && given.filter((item) => item === runAsked).length !== 1) throw new Error(`${runAsked} is given ${given.filter((item) => item === runAsked).length} times`);
+      if (runAsked && givenRuns.filter((item) => item === runAsked).length !== 1) throw new Error(`${runAsked} is given ${givenRuns.filter((item) => item === runAsked).length} times`);
       if (stops.some((number, k) => number < stops[k - 1])) throw new Error(`stops are counted ${stops}`);
-      if (connect.hidden !== (has.place !== 0 || !panel.isFree)) throw new Error('who cannot connect may, or who can may not');
+      if (connect.hidden !== (classState.place !== 0 || !panel.isFree)) throw new Error('who cannot connect may, or who can may not');
       seen.push([document.documentElement.dataset['pupil'], join.hidden, hand.attributes]);
       if (random() < 0.3 || !handout) handsOut();
       isOffered = true; // also what the pupil before at this page has opened
@@ -464,24 +464,24 @@ const PARTS = {
     let entries = 0;
     return async (random, isGood) => {
       const ends = new Set();
-      const kept = new Set(); // the teacher's list
-      const given = []; // all that was ever given, each its text
-      const has = {}; // what the class knows of the page
+      const teacherList = new Set(); // the teacher's list
+      const givenTexts = []; // all that was ever given, each its text
+      const knownFields = {}; // what the class knows of the page
       let screen = 'F(1)', groupText = 'G(1)';
       let isCalm = false; // nothing is lost
-      let asked = []; // by the page that is loaded
-      let shown = ''; // given work that nobody has taken off the screen
-      let told = ''; // what the page is to say
+      let pageRequests = []; // by the page that is loaded
+      let shownWork = ''; // given work that nobody has taken off the screen
+      let noticeKey = ''; // what the page is to say
       let page, work, loadVersions, textOf;
       const isLaw = (when) => {
         const places = loadVersions().map(({ text }) => text);
-        for (const text of given) if (!kept.has(text) && screen !== text && !places.includes(text)) throw new Error(`${when}: ${text} is nowhere`);
-        if (shown && screen !== shown) throw new Error(`${when}: ${shown} has gone off the screen by itself`);
-        if (new Set(asked).size !== asked.length) throw new Error(`${when}: the page asks again: ${asked}`);
-        if (page.byId('note').textContent !== (told && textOf(told))) throw new Error(`${when}: the page says ${page.byId('note').textContent}, and not ${told}`);
+        for (const text of givenTexts) if (!teacherList.has(text) && screen !== text && !places.includes(text)) throw new Error(`${when}: ${text} is nowhere`);
+        if (shownWork && screen !== shownWork) throw new Error(`${when}: ${shownWork} has gone off the screen by itself`);
+        if (new Set(pageRequests).size !== pageRequests.length) throw new Error(`${when}: the page asks again: ${pageRequests}`);
+        if (page.byId('note').textContent !== (noticeKey && textOf(noticeKey))) throw new Error(`${when}: the page says ${page.byId('note').textContent}, and not ${noticeKey}`);
       };
       const puts = (text) => {
-        shown = '';
+        shownWork = '';
         screen = text;
         if (document.documentElement.dataset['group']) groupText = text;
       };
@@ -492,8 +492,8 @@ const PARTS = {
         delete document.documentElement.dataset['group'];
         playsFetch(async () => { throw new Broken(); });
         await learns(page);
-        asked = [];
-        shown = told = '';
+        pageRequests = [];
+        shownWork = noticeKey = '';
         playsFetch((_, { body }) => answersTo(JSON.parse(body)));
         const { Pupil } = await page.load('class/pupil.js');
         const { Programs } = await page.load('programs/programs.js');
@@ -508,12 +508,12 @@ const PARTS = {
             return { version: 1, changes: [], ids: [], drafts: [], pending: [], since: 0, epoch: '', told: 0, why: '', count: 0, kept: { name: 'page' } };
           },
         };
-        const programs = new Programs({ python, work, putProgram: ({ text }) => { puts(text); shown = text; told = 'class_given'; }, makePicture() {} });
+        const programs = new Programs({ python, work, putProgram: ({ text }) => { puts(text); shownWork = text; noticeKey = 'class_given'; }, makePicture() {} });
         globalThis.confirm = () => {
           isLaw('while it asks');
-          asked.push([...kept][0]);
+          pageRequests.push([...teacherList][0]);
           const isYes = random() < 0.5;
-          if (!isYes && window.localStorage.room) told = 'class_given_kept';
+          if (!isYes && window.localStorage.room) noticeKey = 'class_given_kept';
           ends.add(isYes ? 'yes' : 'no');
           return isYes;
         };
@@ -544,13 +544,13 @@ const PARTS = {
         if (request.do === 'group_join') answer = { group: 'red' };
         if (request.do === 'here') {
           const { do: _, took, ...fields } = request;
-          Object.assign(has, fields);
-          if (took && kept.has(took.key)) {
-            kept.delete(took.key);
-            has.text = took.text;
+          Object.assign(knownFields, fields);
+          if (took && teacherList.has(took.key)) {
+            teacherList.delete(took.key);
+            knownFields.text = took.text;
             isLaw('the class has forgotten it');
           }
-          const [current] = kept;
+          const [current] = teacherList;
           answer = { groups: [{ name: 'red', members: [] }], driver: '', place: -1, waiting: 0, robots: 0, robot: '', left_s: 0, name: 'Ana', hand: false, ...(current && { given: { key: current, text: current, robot: 'tinibot', lessons: [] } }) };
         }
         await travels();
@@ -561,11 +561,11 @@ const PARTS = {
       const actions = {
         gives: () => {
           const text = `W(${(entries += 1)})`;
-          given.push(text);
-          kept.add(text);
+          givenTexts.push(text);
+          teacherList.add(text);
         },
         joins: () => {
-          shown = '';
+          shownWork = '';
           box().children[1].dispatchEvent(new Event('submit', { cancelable: true }));
         },
         leaves: () => box().children[5].click(),
@@ -587,10 +587,10 @@ const PARTS = {
       }
       isCalm = true;
       window.localStorage.room = Infinity;
-      await passes(3000 + 2000 * given.length);
+      await passes(3000 + 2000 * givenTexts.length);
       isLaw('at the end');
-      if (kept.size) throw new Error(`${[...kept]} are not taken`);
-      if (has.text !== screen) throw new Error(`the teacher sees ${has.text}, and it is ${screen}`);
+      if (teacherList.size) throw new Error(`${[...teacherList]} are not taken`);
+      if (knownFields.text !== screen) throw new Error(`the teacher sees ${knownFields.text}, and it is ${screen}`);
       return { ends: [...ends], seen: [] };
     };
   },
@@ -598,12 +598,12 @@ const PARTS = {
   // Pictures of pupils' programs.
   async pictures() {
     let story = null;
-    let drawing = 0, most = 0; // at once
+    let drawing = 0, maxDrawing = 0; // at once
     class Blocks {
       constructor() { if (story.breaks()) throw new Broken(); }
       updateLanguage() {}
       async makeFormPicture(form) {
-        most = Math.max(most, (drawing += 1));
+        maxDrawing = Math.max(maxDrawing, (drawing += 1));
         await later(20);
         drawing -= 1;
         if (story.breaks()) throw new Broken();
@@ -642,7 +642,7 @@ const PARTS = {
         await passes(random.below(300));
       }
       await passes(8000);
-      if (most > 1) throw new Error(`${most} pictures are made at once, for which a STOP waits`);
+      if (maxDrawing > 1) throw new Error(`${maxDrawing} pictures are made at once, for which a STOP waits`);
       return { ends: [...new Set(ends)], seen: came };
     };
   },
@@ -674,7 +674,7 @@ const PARTS = {
     let robot = null;
     let isSeen = false; // what runs is what is seen
     let offsetsOf = new Map(); // where what runs stops, by each breakpoint
-    let told = [];
+    let sentBreakpoints = [];
     const stopsAt = (points) => {
       offsetsOf = new Map(points.map(({ point, line }) => [point, isSeen ? (line === 1 ? [0] : []) : offsetsOf.get(point) ?? []]));
     };
@@ -688,8 +688,8 @@ const PARTS = {
       setsPoints(pageState.breakpoints.value.map((item) => ({ ...item, line: item.line + 1 })));
     };
     const checkPoints = () => {
-      const wanted = [...new Set([...offsetsOf.values()].flat())];
-      if (['running', 'paused'].includes(document.documentElement.dataset['phase']) && `${told}` !== `${wanted}`) throw new Error(`what runs stops at ${told} in place of ${wanted}`);
+      const expected = [...new Set([...offsetsOf.values()].flat())];
+      if (['running', 'paused'].includes(document.documentElement.dataset['phase']) && `${sentBreakpoints}` !== `${expected}`) throw new Error(`what runs stops at ${sentBreakpoints} in place of ${expected}`);
     };
     const python = {
       async ask(request) {
@@ -699,7 +699,7 @@ const PARTS = {
           offsetsOf = new Map();
           stopsAt(pageState.breakpoints.value);
         }
-        if ('breakpoints' in request) told = request.breakpoints;
+        if ('breakpoints' in request) sentBreakpoints = request.breakpoints;
         notes.push(['python', { ...request }]);
         await later(0); // so that a run has the same pictures, whatever it stops
         if (robot.breaks()) throw new Broken();
@@ -712,7 +712,7 @@ const PARTS = {
     const line = page.byId('time_at');
     const marked = [];
     Object.assign(page.byId('time_marks'), { clientWidth: 200, clientHeight: 20, getContext: () => ({ fillRect: (x) => marked.push(x) }) });
-    const seen = () => [line.disabled || [line.min, line.max, line.value], page.byId('doing').textContent, page.byId('trace').textContent, page.byId('values').children.map((row) => row.children.map((item) => item.textContent)), structuredClone(pageState.fault.value)];
+    const observe = () => [line.disabled || [line.min, line.max, line.value], page.byId('doing').textContent, page.byId('trace').textContent, page.byId('values').children.map((row) => row.children.map((item) => item.textContent)), structuredClone(pageState.fault.value)];
     return async (random, isGood) => {
       notes.splice(0);
       robot = virtualRobot(random, isGood);
@@ -723,7 +723,7 @@ const PARTS = {
       for (let k = random.below(6); k > 0; k -= 1) {
         await passes(100 + random.below(300));
         marked.length = 0;
-        notes.push(seen());
+        notes.push(observe());
         if (random() < 0.3) {
           setsPoints(random.of([[], [{ line: 1, column: 1, point: {} }], [...pageState.breakpoints.value, { line: 1, column: 1, point: {} }]]));
           await passes(50);
@@ -740,7 +740,7 @@ const PARTS = {
         if (pressed === line && !line.disabled) {
           line.value = String(random.below(3000));
           line.dispatchEvent(new Event('input'));
-          notes.push(seen());
+          notes.push(observe());
         } else if (!pressed.hidden && !pressed.disabled) pressed.click();
       }
       const end = random.of(['stop', 'wait', 'again', 'again']); // again: while it runs
@@ -748,7 +748,7 @@ const PARTS = {
       if (end === 'wait' || isGood) await passes(4000);
       if (end === 'stop' || isGood) page.byId('stop').click();
       if (end !== 'again' || isGood) await passes(50);
-      notes.push(seen());
+      notes.push(observe());
       return { ends: [end === 'again' ? document.documentElement.dataset['phase'] : end, robot.does], seen: notes.slice(notes.findLastIndex(([name, what]) => name === 'sounds' && what === 'begin')) };
     };
   },
@@ -962,9 +962,9 @@ const PARTS = {
     let pages = 0;
     return async (random) => {
       const number = (pages += 1);
-      const there = new Set(), learnt = new Set(); // what Python has
-      const under = new Map(), lost = []; // what is fetched, how often; what was lost, and when
-      const posted = new Map(), reached = new Map(), asked = new Map();
+      const loadedFiles = new Set(), learntLanguages = new Set(); // what Python has
+      const fetchCounts = new Map(), losses = []; // what is fetched, how often; what was lost, and when
+      const posted = new Map(), reached = new Map(), requestsById = new Map();
       let wrong = '', ready = '';
       const fails = (message) => { wrong ||= message; };
       const first = random() < 0.8 ? '' : random.of(['tiniscript.zip', 'messages.en.json', 'messages.es.json', 'pyodide']);
@@ -976,15 +976,15 @@ const PARTS = {
             FS: { mkdirTree() {} },
             unpackArchive(data) {
               if (data.name.startsWith('not ')) fails(`${data.name} is unpacked`);
-              there.add(data.name);
+              loadedFiles.add(data.name);
             },
             runPython: () => (text) => {
               const { do: what, language, id } = JSON.parse(text);
-              if (what === 'learn') return learnt.add(language);
-              const before = asked.get(id);
-              if (NEEDS[what] && !there.has(NEEDS[what])) fails(`${what} comes before ${NEEDS[what]}`);
-              const isLearnt = learnt.has(before.language);
-              if (what.startsWith('lesson') && !isLearnt && before.isUnder && !lost.some(({ name, at }) => name === before.messages && at >= before.at)) fails(`${what} does not wait for its language`);
+              if (what === 'learn') return learntLanguages.add(language);
+              const before = requestsById.get(id);
+              if (NEEDS[what] && !loadedFiles.has(NEEDS[what])) fails(`${what} comes before ${NEEDS[what]}`);
+              const isLearnt = learntLanguages.has(before.language);
+              if (what.startsWith('lesson') && !isLearnt && before.isUnder && !losses.some(({ name, at }) => name === before.messages && at >= before.at)) fails(`${what} does not wait for its language`);
               if (language !== (isLearnt ? before.language : SOURCE)) fails(`${what} is asked in ${language}, and not in ${before.language}`);
               reached.set(id, true);
               return JSON.stringify({ id });
@@ -995,27 +995,27 @@ const PARTS = {
       globalThis.postMessage = ({ id, answer, error, waits, begun }) => {
         if (waits || begun) return;
         if (id === 0) {
-          if (!lost.length || ready === '') ready = error ? 'failed' : 'ready';
+          if (!losses.length || ready === '') ready = error ? 'failed' : 'ready';
           return;
         }
         if (posted.has(id)) fails('it is answered twice');
         posted.set(id, error ? 'error' : 'answer');
-        const { what, language, at, messages } = asked.get(id);
+        const { what, language, at, messages } = requestsById.get(id);
         const needs = what === 'learn' ? messages : NEEDS[what];
-        if (error && !lost.some((item) => item.name === needs && item.at >= at) && ready !== 'failed') fails(`${what} fails: ${error}`);
+        if (error && !losses.some((item) => item.name === needs && item.at >= at) && ready !== 'failed') fails(`${what} fails: ${error}`);
         if (!error && what !== 'learn' && (!reached.has(id) || JSON.parse(answer).id !== id)) fails(`${what} is answered, and was not done`);
-        if (!error && what === 'learn' && !learnt.has(language)) fails(`${language} is learnt, and is not there`);
+        if (!error && what === 'learn' && !learntLanguages.has(language)) fails(`${language} is learnt, and is not there`);
       };
       globalThis.name = random.of(['', 'en', 'es']);
       playsFetch(async (address) => {
         const name = String(address).replace('./', '');
-        if (name.endsWith('.zip') && (there.has(name) || under.get(name))) fails(`${name} is fetched again`);
-        if (learnt.has(name.split('.')[1])) fails(`${name} is fetched again`);
-        under.set(name, (under.get(name) ?? 0) + 1);
+        if (name.endsWith('.zip') && (loadedFiles.has(name) || fetchCounts.get(name))) fails(`${name} is fetched again`);
+        if (learntLanguages.has(name.split('.')[1])) fails(`${name} is fetched again`);
+        fetchCounts.set(name, (fetchCounts.get(name) ?? 0) + 1);
         const isLost = loses(name);
         await later(ready ? 5 + random.below(random.of([20, 400])) : name.endsWith('.zip') ? 10 : 20);
-        under.set(name, under.get(name) - 1);
-        if (isLost) lost.push({ name, at: now() });
+        fetchCounts.set(name, fetchCounts.get(name) - 1);
+        if (isLost) losses.push({ name, at: now() });
         if (isLost && random() < 0.5) throw new Broken();
         return { ok: !isLost, status: isLost ? 503 : 200, body: null, arrayBuffer: async () => Object.assign(new ArrayBuffer(1), { name: isLost ? `not ${name}` : name }) };
       });
@@ -1028,7 +1028,7 @@ const PARTS = {
       for (let k = 2 + random.below(8); k > 0; k -= 1) {
         const what = random.of(['check', 'learn', 'learn', 'lesson_list', ...Object.keys(NEEDS)]), language = random.of(['es', 'pt', 'en']);
         const id = (count += 1), messages = `messages.${language}.json`;
-        asked.set(id, { what, language, messages, at: now(), isUnder: under.get(messages) > 0 });
+        requestsById.set(id, { what, language, messages, at: now(), isUnder: fetchCounts.get(messages) > 0 });
         dispatchEvent(Object.assign(new Event('message'), { data: { id, request: JSON.stringify({ do: what, language, id }) } }));
         await passes(random.of([0, 5, 50, 200]));
       }
@@ -1082,19 +1082,19 @@ const PARTS = {
     const { watchedFetch } = await page.load('page/progress.js');
     const NOTICE_MS = 3000, TIMEOUT_MS = 20_000;
     return async (random) => {
-      const began_ms = now(), told = [];
-      const tells = (what) => told.push([Math.round(now() - began_ms), what]);
+      const began_ms = now(), reports = [];
+      const tells = (what) => reports.push([Math.round(now() - began_ms), what]);
       const cancelling = new AbortController();
       const gap = () => 7 * (random.of([1, 1, 70, 70, 410, 440, 1000, 2700, 3000]) + random.below(12)); // neither limit at the same time
-      const how = random.of(['whole', 'whole', 'broken', 'broken', 'refused', 'lost']);
+      const outcome = random.of(['whole', 'whole', 'broken', 'broken', 'refused', 'lost']);
       const answer_ms = gap(), gaps = Array.from({ length: random.below(5) }, gap), end_ms = gap();
       const cancel_ms = random() < 0.4 ? 7 * random.below(random.of([400, 6000])) + 3 : Infinity;
       if (cancel_ms < Infinity) later(cancel_ms).then(() => cancelling.abort(new Broken('cancelled')));
       const fetcher = (_, { signal }) => new Promise((resolve, reject) => {
         signal.addEventListener('abort', () => reject(signal.reason));
         later(answer_ms).then(async () => {
-          if (how === 'lost') reject(new Broken());
-          if (how === 'refused') resolve(new Response('why', { status: 503 }));
+          if (outcome === 'lost') reject(new Broken());
+          if (outcome === 'refused') resolve(new Response('why', { status: 503 }));
           let pieces;
           resolve(new Response(new ReadableStream({ start(controller) { pieces = controller; } })));
           let isOver = false;
@@ -1104,21 +1104,21 @@ const PARTS = {
             if (!isOver) pieces.enqueue(new TextEncoder().encode('x'));
           }
           await later(end_ms);
-          if (!isOver) how === 'broken' ? pieces.error(new Broken()) : pieces.close();
+          if (!isOver) outcome === 'broken' ? pieces.error(new Broken()) : pieces.close();
         });
       });
       const options = { cancelSignal: cancelling.signal, onWait: () => tells('waits'), onProgress: () => tells('comes'), onFail: () => tells('fails') };
-      let found = '';
-      watchedFetch('x', options, fetcher).then((response) => response.text()).then((all) => { found = all; }, () => { found = 'nothing'; });
+      let receivedText = '';
+      watchedFetch('x', options, fetcher).then((response) => response.text()).then((all) => { receivedText = all; }, () => { receivedText = 'nothing'; });
       await passes(300_000);
       // What has to be told.
-      const wanted = [];
-      let last_ms = 0, at_ms = answer_ms, end = how, hasWaited = false;
-      const steps = ['lost', 'refused'].includes(how) ? [] : [...gaps.map((ms) => ['comes', ms]), [how, end_ms]];
+      const expected = [];
+      let last_ms = 0, at_ms = answer_ms, end = outcome, hasWaited = false;
+      const steps = ['lost', 'refused'].includes(outcome) ? [] : [...gaps.map((ms) => ['comes', ms]), [outcome, end_ms]];
       const reaches = (next_ms) => { // whether it gets so far
         const limit_ms = Math.min(cancel_ms, last_ms + TIMEOUT_MS);
         if (!hasWaited && last_ms + NOTICE_MS < Math.min(next_ms, limit_ms)) {
-          wanted.push([last_ms + NOTICE_MS, 'waits']);
+          expected.push([last_ms + NOTICE_MS, 'waits']);
           hasWaited = true;
         }
         if (next_ms < limit_ms) return true;
@@ -1129,11 +1129,11 @@ const PARTS = {
       if (reaches(at_ms)) for (const [what, ms] of steps) {
         if (!reaches(at_ms + ms)) break;
         at_ms += ms;
-        if (what === 'comes') wanted.push([last_ms = at_ms, 'comes']);
+        if (what === 'comes') expected.push([last_ms = at_ms, 'comes']);
       }
-      if (!['whole', 'refused'].includes(end)) wanted.push([at_ms, 'fails']);
-      if (JSON.stringify(told) !== JSON.stringify(wanted)) throw new Error(`${JSON.stringify([how, answer_ms, gaps, end_ms, cancel_ms])} tells ${JSON.stringify(told)} in place of ${JSON.stringify(wanted)}`);
-      if (found !== ({ whole: 'x'.repeat(gaps.length), refused: 'why' }[end] ?? 'nothing')) throw new Error(`${end} has given ${found}`);
+      if (!['whole', 'refused'].includes(end)) expected.push([at_ms, 'fails']);
+      if (JSON.stringify(reports) !== JSON.stringify(expected)) throw new Error(`${JSON.stringify([outcome, answer_ms, gaps, end_ms, cancel_ms])} tells ${JSON.stringify(reports)} in place of ${JSON.stringify(expected)}`);
+      if (receivedText !== ({ whole: 'x'.repeat(gaps.length), refused: 'why' }[end] ?? 'nothing')) throw new Error(`${end} has given ${receivedText}`);
       return { ends: [end], seen: [] };
     };
   },
@@ -1284,7 +1284,7 @@ const PARTS = {
       work.text = text;
       if (!pageState.groupName.value) return;
       hasGroupText = true;
-      mine = '';
+      ownProgram = '';
     });
     let hasGroupText = false;
     const openLesson = () => LESSONS[page.byId('lesson_page').dataset.lesson - 1];
@@ -1294,15 +1294,15 @@ const PARTS = {
       pageState.programText.set(text);
     };
     const inEditor = () => JSON.stringify([work.text, work.robot, work.name]);
-    let mine = ''; // the own program, which has stepped back
+    let ownProgram = ''; // the own program, which has stepped back
     const given = (program) => {
       if (pageState.groupName.value) wrong ||= 'a lesson takes the program of a group';
       if (program.lesson && program.lesson !== openLesson().name) wrong ||= `the program of ${program.lesson} comes beside ${openLesson().name}`;
-      if (program.lesson) mine ||= inEditor();
+      if (program.lesson) ownProgram ||= inEditor();
       opens(program);
       if (program.lesson) return;
-      if (inEditor() !== mine) wrong ||= `${inEditor()} comes back in place of ${mine}`;
-      mine = '';
+      if (inEditor() !== ownProgram) wrong ||= `${inEditor()} comes back in place of ${ownProgram}`;
+      ownProgram = '';
     };
     const exchanges = (program) => {
       if (program.lesson && !program.text && (!isRightOn(work.robot, work.text) || isRightOn(program.robot, work.text))) wrong ||= `${inEditor()} goes from a ${program.robot}`;
@@ -1313,7 +1313,7 @@ const PARTS = {
     page.byId('side_lessons').click();
     await passes(500);
     const { text } = await page.load('page/texts.js'); // that a lesson was solved before is kept as its stars are
-    const said = () => [page.byId('lesson_said').textContent.replace(` ${text('lesson_was_done')}`, ''), page.byId('lesson_said').dataset['verdict'], page.byId('lesson_stars').textContent, page.byId('lesson_end').hidden,
+    const readVerdict = () => [page.byId('lesson_said').textContent.replace(` ${text('lesson_was_done')}`, ''), page.byId('lesson_said').dataset['verdict'], page.byId('lesson_stars').textContent, page.byId('lesson_end').hidden,
       page.byId('lesson_findings').children.length, page.byId('lesson_next').hidden, page.byId('lesson_end').textContent, page.byId('lesson_check').hidden];
     const actions = {
       check: () => page.byId('lesson_check').click(),
@@ -1384,7 +1384,7 @@ const PARTS = {
       },
       quits: () => pageState.groupName.set(''),
       opens(random) {
-        mine = '';
+        ownProgram = '';
         opens({ text: written(random), robot: random.of(['tinibot', 'liner']), name: `${random.below(9)}.ts` });
       },
     };
@@ -1400,15 +1400,15 @@ const PARTS = {
         actions[end]();
         if (!isGood) await passes(random.below(400));
       }
-      const seen = [said()];
+      const seen = [readVerdict()];
       if (!isGood) return { ends: [end], seen };
       for (let k = 0; k < 20; k += 1) {
         await passes(50);
-        seen.push(said());
+        seen.push(readVerdict());
       }
       actions.check();
       await passes(3000);
-      seen.push(said());
+      seen.push(readVerdict());
       delay = () => 5 + random.below(300);
       for (let k = 10 + random.below(40); k > 0; k -= 1) {
         await takes[random.of(['chooses', 'writes', ...Object.keys(takes)])](random);
@@ -1419,7 +1419,7 @@ const PARTS = {
       await rests();
       takes.quits();
       lessons.leave();
-      if (mine || work.lesson || work.own) throw new Error(`after all lessons there is ${work.lesson} ${inEditor()}, and the own program is ${mine}`);
+      if (ownProgram || work.lesson || work.own) throw new Error(`after all lessons there is ${work.lesson} ${inEditor()}, and the own program is ${ownProgram}`);
       return { ends: [end], seen };
     };
   },
@@ -1429,19 +1429,19 @@ const PARTS = {
     const page = freshPage();
     const { RequestQueue, ConnectionFailure } = await page.load('robot/transport.js');
     return async (random, isGood) => {
-      const told = [];
+      const reports = [];
       let open = 0;
       let isOver = false;
       const end = random.of(isGood ? ['stays'] : ['stays', 'goes', 'goes']);
-      const asking = new RequestQueue({ onEvent: ({ event }) => told.push(event), onEnd: (error) => told.push(error.reason) });
+      const asking = new RequestQueue({ onEvent: ({ event }) => reports.push(event), onEnd: (error) => reports.push(error.reason) });
       asking.send = async () => {
-        const sent = asking.requests.splice(0);
+        const sentRequests = asking.requests.splice(0);
         await later(isGood ? 5 : random.below(300));
-        for (const { id, what } of sent) if (!isOver) asking.handleNews({ id, ok: what });
+        for (const { id, what } of sentRequests) if (!isOver) asking.handleNews({ id, ok: what });
       };
       for (let k = 0; k < 6; k += 1) {
         open += 1;
-        asking.ask({ what: k }).then(({ ok }) => told.push(ok), (error) => told.push(error.reason)).finally(() => { open -= 1; });
+        asking.ask({ what: k }).then(({ ok }) => reports.push(ok), (error) => reports.push(error.reason)).finally(() => { open -= 1; });
         await passes(random.below(100));
         if (end === 'goes' && !isOver && random() < 0.4) {
           isOver = true;
@@ -1449,8 +1449,8 @@ const PARTS = {
         }
       }
       await passes(1000);
-      if (open) throw new Error(`${open} never end: ${told}`);
-      return { ends: [end], seen: told };
+      if (open) throw new Error(`${open} never end: ${reports}`);
+      return { ends: [end], seen: reports };
     };
   },
 
@@ -1478,18 +1478,18 @@ const PARTS = {
     const NOTICE_MS = 3000, TIMEOUT_MS = 20_000;
     return async (random, isGood) => {
       workers.length = 0;
-      const told = [], wanted = [];
-      const listens = () => ({ onWait: () => told.push('waits'), onFail: () => told.push('fails'), onBegin: () => told.push('begins') });
+      const reports = [], expected = [];
+      const listens = () => ({ onWait: () => reports.push('waits'), onFail: () => reports.push('fails'), onBegin: () => reports.push('begins') });
       const ends = new Set();
       let isReady = false, isLate = false, isThere = true, isAnswering = false, asks = 0;
-      const open = new Set(), ended = [], wantedEnds = [];
+      const openNumbers = new Set(), endings = [], expectedEndings = [];
       const python = new Python('en');
       python.listen(listens());
       python.ready.then(() => { isAnswering = true; });
       const newest = () => workers.at(-1);
       const rejects = () => {
-        for (const number of open) wantedEnds.push([number, 'rejected']);
-        open.clear();
+        for (const number of openNumbers) expectedEndings.push([number, 'rejected']);
+        openNumbers.clear();
         newest().asked = [];
       };
       const fails = (end) => {
@@ -1497,27 +1497,27 @@ const PARTS = {
         rejects();
         if (isReady) return;
         [isThere, isLate] = [false, false];
-        wanted.push('fails');
+        expected.push('fails');
       };
       const actions = {
         asks() {
           const number = (asks += 1);
-          if (isThere) open.add(number);
-          else wantedEnds.push([number, 'rejected']);
-          python.ask({ number }).then((answer) => ended.push([number, answer]), () => ended.push([number, 'rejected']));
+          if (isThere) openNumbers.add(number);
+          else expectedEndings.push([number, 'rejected']);
+          python.ask({ number }).then((answer) => endings.push([number, answer]), () => endings.push([number, 'rejected']));
         },
         answers() {
           const [request] = newest().asked.splice(0, 1);
           if (!isThere || !request) return;
-          open.delete(request.number);
+          openNumbers.delete(request.number);
           const isError = random() < 0.3;
-          wantedEnds.push([request.number, isError ? 'rejected' : request.number]);
+          expectedEndings.push([request.number, isError ? 'rejected' : request.number]);
           newest().says(isError ? { id: request.id, error: 'no' } : { id: request.id, answer: JSON.stringify(request.number) });
         },
         begins: () => isThere && newest().says({ begun: true }),
         waits() {
           if (!isThere) return;
-          wanted.push('waits');
+          expected.push('waits');
           isLate = !isReady; // what a lesson needs may be late when it is there
           newest().says({ waits: true });
         },
@@ -1537,18 +1537,18 @@ const PARTS = {
           newest().dispatchEvent(Object.assign(new Event('error'), { message: 'broken' }));
         },
         tries() {
-          if (!isThere) wanted.push('begins');
+          if (!isThere) expected.push('begins');
           isThere = true;
           python.tryAgain('en');
         },
         listens() {
-          if (!isThere) wanted.push('fails');
-          else if (isLate) wanted.push('waits');
+          if (!isThere) expected.push('fails');
+          else if (isLate) expected.push('waits');
           python.listen(listens());
         },
       };
       const goesOn = async (ms) => { // nobody waits for a worker that says nothing
-        for (const [limit_ms, callback] of [[NOTICE_MS, () => { isLate = true; wanted.push('waits'); }], [TIMEOUT_MS, () => fails('silent')]]) {
+        for (const [limit_ms, callback] of [[NOTICE_MS, () => { isLate = true; expected.push('waits'); }], [TIMEOUT_MS, () => fails('silent')]]) {
           const worker = newest(), left_ms = worker.began_ms + limit_ms - now();
           if (isThere && !worker.hasSpoken && left_ms > 0 && left_ms <= ms) callback();
         }
@@ -1559,8 +1559,8 @@ const PARTS = {
         actions[act]();
         await goesOn(random.of([0, 10, 2000, 19_000, 25_000]));
         const assertSame = (actual, right, label) => { if (JSON.stringify(actual) !== JSON.stringify(right)) throw new Error(`after ${act} ${label}: ${JSON.stringify(actual)} in place of ${JSON.stringify(right)}`); };
-        assertSame(told, wanted, 'it is told');
-        assertSame(ended, wantedEnds, 'asks end');
+        assertSame(reports, expected, 'it is told');
+        assertSame(endings, expectedEndings, 'asks end');
         assertSame([python.isLate, isAnswering], [isLate, isReady], 'late and ready');
         assertSame(workers.map(({ isEnded }) => isEnded), workers.map((worker) => !isThere || worker !== newest()), 'those that have ended');
       }
@@ -1639,7 +1639,7 @@ const PARTS = {
     let numbers = 0;
     let states = 0; // told; a class's code is the number of the newest
     /** Who is in the class, by name, and what is kept of others. */
-    const here = new Map(), kept = new Map(), groups = new Map(), robots = new Map();
+    const present = new Map(), keptWorks = new Map(), groups = new Map(), robots = new Map();
     let room_ = { turn_s: 60, places: 2, goes_on: false };
     const groupOf = (number) => [...groups].find(([, { pupils }]) => pupils.includes(number))?.[0];
     const seenLarge = () => large.open && [large.querySelectorAll('h2')[0].textContent, large.children[1].children[1].textContent, open.get(large.children[1].children[0].children[0].src)];
@@ -1648,13 +1648,13 @@ const PARTS = {
       let isClosed = !large.open; // by somebody
       let newest = 0; // of the states that were seen
       let isLate = () => !isGood;
-      let asked = []; // besides what is asked again and again
+      let requests = []; // besides what is asked again and again
       let polls = 0;
       const handlers = {
-        class_hand: ({ pupil }) => { const found = [...here.values()].find(({ number }) => number === pupil); if (found) found.hand = 0; },
-        class_next: ({ pupil }) => { const found = [...here.values()].find(({ number }) => number === pupil); if (found) found.robot = ''; },
-        class_remove: ({ pupil }) => { for (const [name, { number }] of here) if (number === pupil) here.delete(name); },
-        class_forget: ({ key }) => kept.delete(key),
+        class_hand: ({ pupil }) => { const found = [...present.values()].find(({ number }) => number === pupil); if (found) found.hand = 0; },
+        class_next: ({ pupil }) => { const found = [...present.values()].find(({ number }) => number === pupil); if (found) found.robot = ''; },
+        class_remove: ({ pupil }) => { for (const [name, { number }] of present) if (number === pupil) present.delete(name); },
+        class_forget: ({ key }) => keptWorks.delete(key),
         class_robot: ({ port: id, gives }) => (gives ? robots.set(id, { name: '', pupil: '', left_s: 0 }) : robots.delete(id)),
         class_turn: ({ seconds }) => { room_.turn_s = seconds; },
         class_places: ({ places: count }) => { room_.places = count; },
@@ -1662,10 +1662,10 @@ const PARTS = {
       const REPEATED = ['class', 'class_text', 'class_run', 'ports'];
       room = async (request) => {
         if (request.do === 'class') polls += 1;
-        if (!REPEATED.includes(request.do)) asked.push(request);
+        if (!REPEATED.includes(request.do)) requests.push(request);
         const isLost = isLate() && random() < 0.5;
         if (!isLost) handlers[request.do]?.(request);
-        const [pupils, works, shared, lent] = [here, kept, groups, robots].map((all) => structuredClone([...all]));
+        const [pupils, works, shared, lent] = [present, keptWorks, groups, robots].map((all) => structuredClone([...all]));
         const state = { ...room_, code: String((states += 1)) };
         await later(isLate() ? random.below(300) : 5);
         if (isLost) {
@@ -1685,29 +1685,29 @@ const PARTS = {
         });
       };
       const name = () => random.of(['Ana', 'Luz', 'Teo', 'Eva']);
-      const pupil = () => here.get(name());
+      const pupil = () => present.get(name());
       const changes = (fields) => () => { const found = pupil(); if (found) Object.assign(found, fields()); };
-      const presses = (part, wanted) => {
+      const presses = (part, isExpected) => {
         if (!part || part.hidden || part.disabled) return;
-        const before = asked.length;
+        const before = requests.length;
         part.click();
-        const [request, ...more] = asked.slice(before);
-        if (more.length || !request || !wanted(request)) throw new Error(`${JSON.stringify([request, ...more])} is asked by ${part.className || part.dataset['text']}`);
+        const [request, ...more] = requests.slice(before);
+        if (more.length || !request || !isExpected(request)) throw new Error(`${JSON.stringify([request, ...more])} is asked by ${part.className || part.dataset['text']}`);
       };
       const tileOf = () => random.of([...wall.children, null]);
-      const numberOf = (tile) => here.get(tile?.children[0].textContent.split(' · ')[0])?.number;
+      const numberOf = (tile) => present.get(tile?.children[0].textContent.split(' · ')[0])?.number;
       const tilePresses = (className, what) => () => {
         const tile = tileOf(), number = numberOf(tile);
         if (number) presses(within(tile, className), (request) => request.do === what && request.pupil === number);
       };
       const actions = {
-        comes: () => { const who = name(); if (!here.has(who)) here.set(who, { number: (numbers += 1), text: '', version: 0, silent_s: 0, place: 0, robot: '', is_running: false, left_s: 0, is_right: true, hand: 0, lessons: [], own_robot: { name: '', colour: 0 } }); },
+        comes: () => { const who = name(); if (!present.has(who)) present.set(who, { number: (numbers += 1), text: '', version: 0, silent_s: 0, place: 0, robot: '', is_running: false, left_s: 0, is_right: true, hand: 0, lessons: [], own_robot: { name: '', colour: 0 } }); },
         writes: changes(() => ({ text: random() < 0.2 ? '' : `W(${numbers})`, version: (numbers += 1) })),
         waves: changes(() => ({ hand: random.below(3), place: random.below(3), silent_s: random.of([0, 9]), is_right: random() < 0.5 })),
         drives: changes(() => ({ robot: random.of(['', 'Bo']), is_running: random() < 0.5, left_s: random.below(99) })),
         learns: changes(() => ({ lessons: ['1 one', '2 two'].slice(random.below(3)), own_robot: { name: random.of(['', 'Zip']), colour: 0 } })),
-        goes: () => { here.delete(name()); },
-        kept: () => { const key = `old ${name()}`; if (!kept.delete(key)) kept.set(key, { text: `S(${numbers})`, version: 0 }); },
+        goes: () => { present.delete(name()); },
+        kept: () => { const key = `old ${name()}`; if (!keptWorks.delete(key)) keptWorks.set(key, { text: `S(${numbers})`, version: 0 }); },
         joins: () => {
           const found = pupil();
           for (const group of groups.values()) group.pupils = group.pupils.filter((number) => number !== found?.number);
@@ -1734,28 +1734,28 @@ const PARTS = {
         removes: tilePresses('out', 'class_remove'),
         forgets() {
           const tile = tileOf(), key = tile?.children[0].textContent;
-          if (kept.has(key)) presses(within(tile, 'out'), (request) => request.do === 'class_forget' && request.key === key);
+          if (keptWorks.has(key)) presses(within(tile, 'out'), (request) => request.do === 'class_forget' && request.key === key);
         },
         ends() { // of who is seen large
-          const number = here.get(seenLarge()[0])?.number;
-          const [what, button] = random.of(Object.entries({ class_hand: 4, class_stop: 5, class_next: 6, class_remove: 7 }));
+          const number = present.get(seenLarge()[0])?.number;
+          const [what, buttonIndex] = random.of(Object.entries({ class_hand: 4, class_stop: 5, class_next: 6, class_remove: 7 }));
           if (!number) return;
-          presses(large.children[0].children[button], (request) => request.do === what && request.pupil === number);
+          presses(large.children[0].children[buttonIndex], (request) => request.do === what && request.pupil === number);
           if (what === 'class_remove' && large.open) throw new Error('who is removed is seen large');
           isClosed ||= what === 'class_remove';
         },
         takes: () => presses(random.of([...robotList.children, null])?.children[2], (request) => request.do === 'class_robot' && !request.gives),
         lends() {
           port.value = random.of(['', 'p1', 'p2']);
-          const before = asked.length;
+          const before = requests.length;
           lends.click();
-          if (asked.length - before !== Number(port.value !== '')) throw new Error(`${JSON.stringify(asked.slice(before))} is asked for ${port.value}`);
+          if (requests.length - before !== Number(port.value !== '')) throw new Error(`${JSON.stringify(requests.slice(before))} is asked for ${port.value}`);
         },
         sets() {
           [minutes.value, places.value] = [String(1 + random.below(9)), String(1 + random.below(9))];
-          const before = asked.length;
+          const before = requests.length;
           for (const field of [minutes, places]) field.dispatchEvent(new Event('change'));
-          if (`${asked.slice(before).map(({ seconds, places: count }) => seconds / 60 || count)}` !== `${[minutes, places].map(({ value }) => value)}`) throw new Error('what is set is not asked for');
+          if (`${requests.slice(before).map(({ seconds, places: count }) => seconds / 60 || count)}` !== `${[minutes, places].map(({ value }) => value)}`) throw new Error('what is set is not asked for');
         },
         waits: () => {},
       };
@@ -1775,13 +1775,13 @@ const PARTS = {
       await passes(10_000);
       if (polls < 9 || polls > 10) throw new Error(`${polls} times in 10 s the class is asked`);
       const clock = (seconds) => `${Math.floor(seconds / 60)}:${String(seconds % 60).padStart(2, '0')}`;
-      const members = [...groups].map(([key, group]) => [key, { ...group, all: [...here].filter(([, { number }]) => group.pupils.includes(number)) }]).filter(([, { all }]) => all.length);
+      const members = [...groups].map(([key, group]) => [key, { ...group, all: [...present].filter(([, { number }]) => group.pupils.includes(number)) }]).filter(([, { all }]) => all.length);
       const joined = members.map(([key, { text: program, all }]) => [key, {
         text: program, isGroup: true, own_robot: { name: all.map(([name]) => name).join(', ') }, lessons: all.flatMap(([, { lessons }]) => lessons),
         silent_s: Math.min(...all.map(([, row]) => row.silent_s)), is_right: all.every(([, row]) => row.is_right),
         hand: Math.max(...all.map(([, row]) => row.hand)), place: Math.max(...all.map(([, row]) => row.place)), ...(({ robot, is_running, left_s }) => ({ robot, is_running, left_s }))((all.find(([, { robot }]) => robot) ?? all[0])[1]),
       }]);
-      const all = [...[...here].filter(([, { number }]) => !members.some(([, { pupils }]) => pupils.includes(number))), ...joined, ...kept].sort(([one], [other]) => one.localeCompare(other));
+      const all = [...[...present].filter(([, { number }]) => !members.some(([, { pupils }]) => pupils.includes(number))), ...joined, ...keptWorks].sort(([one], [other]) => one.localeCompare(other));
       const isSame = (actual, expected, label) => { if (JSON.stringify(actual) !== JSON.stringify(expected)) throw new Error(`${label}: ${JSON.stringify(actual)} in place of ${JSON.stringify(expected)}`); };
       const wordsIn = (part) => (typeof part === 'string' ? part : part.textContent + part.children.map(wordsIn).join(''));
       isSame(wall.children.map((tile) => [tile.children[0].textContent, tile.dataset['state'], tile.children[2].children[1].textContent, !within(tile, 'badge').hidden && wordsIn(within(tile, 'badge')), tile.children[2].children[0].children.filter(({ className }) => className).length, ...['hand', 'play', 'out', 'join'].map((item) => !within(tile, item).hidden)]),
@@ -1789,33 +1789,33 @@ const PARTS = {
           const state = !own_robot ? 'gone' : silent_s ? 'away' : is_right ? 'right' : 'wrong';
           return [[name, own_robot?.name].filter(Boolean).join(' · '), state, state === 'right' ? '✓' : text(`class_is_${state}`), robot ? `${is_running ? '▶ ' : ''}${robot} ${clock(left_s)}` : place ? text('class_place_short', { place }) : false, new Set(lessons).size, Boolean(hand), !isGroup && ['right', 'wrong'].includes(state), !isGroup, isGroup];
         }), 'the tiles');
-      const hands = [...here].filter(([, { hand }]) => hand).sort(([, one], [, other]) => one.hand - other.hand).map(([name]) => name).join(', ');
-      const said = [text('class_count', { pupils: here.size, robots: robots.size, waiting: [...here.values()].filter(({ place }) => place).length }), hands && text('class_hands', { names: hands })].filter(Boolean).join(' ');
-      if (!status.textContent.startsWith(said) || (room_.goes_on && said === status.textContent)) throw new Error(`${status.textContent} in place of ${said}`);
-      isSame([giveBack.hidden, anew.hidden, wall.hidden, minutes.value, places.value], [!kept.size || !here.size, !room_.goes_on, !all.length, String(room_.turn_s / 60), String(room_.places)], 'the bar');
+      const hands = [...present].filter(([, { hand }]) => hand).sort(([, one], [, other]) => one.hand - other.hand).map(([name]) => name).join(', ');
+      const expectedText = [text('class_count', { pupils: present.size, robots: robots.size, waiting: [...present.values()].filter(({ place }) => place).length }), hands && text('class_hands', { names: hands })].filter(Boolean).join(' ');
+      if (!status.textContent.startsWith(expectedText) || (room_.goes_on && expectedText === status.textContent)) throw new Error(`${status.textContent} in place of ${expectedText}`);
+      isSame([giveBack.hidden, anew.hidden, wall.hidden, minutes.value, places.value], [!keptWorks.size || !present.size, !room_.goes_on, !all.length, String(room_.turn_s / 60), String(room_.places)], 'the bar');
       isSame([chips.hidden, chips.children.map((chip) => [...chip.children.slice(1).map(wordsIn), chip.className])], [!robots.size, [...robots].map(([id, row]) => [row.name || id, row.pupil ? text('class_held', { name: row.pupil, time: clock(row.left_s) }) : text('class_free'), row.pupil ? 'held' : ''])], 'the robots');
       isSame(robotList.children.map((row) => wordsIn(row.children[0])), [...robots].map(([id, row]) => [row.name, id].filter(Boolean).join(' · ')), 'the list of robots');
       const tiles = wall.children.map(({ children }) => [children[0].textContent.split(' · ')[0], open.get(children[1].children[0].src), children[1].children[0].src]);
-      const wanted = all.map(([name, { text: program }]) => [name, program && (languages ? `${program} words ${languages}` : `${program} words`)]);
-      isSame(tiles.map(([name, picture = '']) => [name, picture]), wanted, 'the pictures');
+      const expected = all.map(([name, { text: program }]) => [name, program && (languages ? `${program} words ${languages}` : `${program} words`)]);
+      isSame(tiles.map(([name, picture = '']) => [name, picture]), expected, 'the pictures');
       if (tiles.some(([, picture, address]) => address && !picture)) throw new Error('a picture that is kept no more is in a tile');
-      const shown = new Set(tiles.map(([, , address]) => address).filter(Boolean));
-      if (shown.size !== open.size) throw new Error(`${open.size} pictures are kept, and ${shown.size} are seen`);
+      const shownAddresses = new Set(tiles.map(([, , address]) => address).filter(Boolean));
+      if (shownAddresses.size !== open.size) throw new Error(`${open.size} pictures are kept, and ${shownAddresses.size} are seen`);
       if (large.open && isClosed) throw new Error('what was closed is seen large again');
-      const big = seenLarge();
-      const own = big && all.find(([name]) => name === big[0]);
-      if (big && !own) throw new Error(`${big[0]} is seen large, and is not here`);
-      if (own) {
-        const { text: program, robot = '', is_running = false, hand = 0, isGroup, own_robot } = own[1], [, , , said_, lower, stop, next, remove] = large.children[0].children;
-        if (program) isSame(big.slice(1), [program, wanted[all.indexOf(own)][1]], 'what is seen large');
-        isSame([said_.textContent.startsWith(text(is_running ? 'class_runs' : 'class_drives', { robot })), lower.hidden, stop.hidden, next.hidden, remove.hidden, large.children[1].children[2].hidden, large.children[1].children[0].hidden], [Boolean(robot), !hand, !robot, !robot, Boolean(isGroup), !isGroup, !program], `beside ${own[0]}, who is seen large ${Boolean(own_robot)}`);
+      const largeView = seenLarge();
+      const ownEntry = largeView && all.find(([name]) => name === largeView[0]);
+      if (largeView && !ownEntry) throw new Error(`${largeView[0]} is seen large, and is not here`);
+      if (ownEntry) {
+        const { text: program, robot = '', is_running = false, hand = 0, isGroup, own_robot } = ownEntry[1], [, , , said_, lower, stop, next, remove] = large.children[0].children;
+        if (program) isSame(largeView.slice(1), [program, expected[all.indexOf(ownEntry)][1]], 'what is seen large');
+        isSame([said_.textContent.startsWith(text(is_running ? 'class_runs' : 'class_drives', { robot })), lower.hidden, stop.hidden, next.hidden, remove.hidden, large.children[1].children[2].hidden, large.children[1].children[0].hidden], [Boolean(robot), !hand, !robot, !robot, Boolean(isGroup), !isGroup, !program], `beside ${ownEntry[0]}, who is seen large ${Boolean(own_robot)}`);
       }
-      if (giving.open && !kept.size) throw new Error('there is nothing to give');
+      if (giving.open && !keptWorks.size) throw new Error('there is nothing to give');
       const tile = wall.children.find((item) => numberOf(item) && !within(item, 'play').hidden), before = played;
       tile?.children.find(({ className }) => className === 'play').click();
       await passes(500);
       if (tile && played === before) throw new Error('a run is not played');
-      for (const item of [here, kept, groups, robots]) item.clear();
+      for (const item of [present, keptWorks, groups, robots]) item.clear();
       large.close();
       giving.close();
       await passes(5000);
@@ -1872,8 +1872,8 @@ const PARTS = {
     const panel = new RobotPanel({ python: { tryAgain() {} }, goTo() {}, recorder: noting(notes, 'recorder'), place: new RunningPlace(), pad: noting(notes, 'pad') });
     await passes(10);
     const EVENTS = [{ event: 'STARTED', program: 'ff', is_program: true }, { event: 'PLACE', program: 'ff', at: 0 }, { event: 'SHOW', value: '1' }, { event: 'DONE' }, { event: 'LOST' }, { event: 'STOPPED', cause: 'MESSAGE' }, { event: 'FAULT', fault: 'STUCK', program: 'ff', at: 0 }];
-    const said = () => page.byId('link_said').textContent;
-    const seen = () => [said(), page.byId('link_shown').textContent, page.byId('link_name').textContent, page.byId('link_rename_to').value, document.documentElement.dataset['robot'], structuredClone(pageState.robotRun.value)];
+    const readMessage = () => page.byId('link_said').textContent;
+    const observe = () => [readMessage(), page.byId('link_shown').textContent, page.byId('link_name').textContent, page.byId('link_rename_to').value, document.documentElement.dataset['robot'], structuredClone(pageState.robotRun.value)];
     const noted = (...what) => notes.some((item) => `${item}` === `${what}`);
     return async (random, isGood) => {
       const before = ways;
@@ -1882,7 +1882,7 @@ const PARTS = {
       delay = () => (isGood ? 5 : 5 + random.below(300));
       failure = isGood || random() < 0.7 ? '' : 'link_silent';
       panel.connectByHost('p');
-      const all = [structuredClone(pageState.robotRun.value), document.documentElement.dataset['robot']];
+      const observations = [structuredClone(pageState.robotRun.value), document.documentElement.dataset['robot']];
       await passes(isGood ? 50 : random.below(600));
       const isMet = () => document.documentElement.dataset['robot'] === 'connected';
       let stop = ''; // pressed, or done, since the newest start
@@ -1897,7 +1897,7 @@ const PARTS = {
           if (event.event === 'STARTED' && stop === 'done') stop = '';
           if (event.event !== 'STOPPED') return;
           if (!noted('pad', 'releaseAll')) throw new Error('what is held is held on after a stop');
-          if (!isOpen && stop === '' && said() !== text('stopped_MESSAGE')) throw new Error(`of a stop after a start it says ${said()}`);
+          if (!isOpen && stop === '' && readMessage() !== text('stopped_MESSAGE')) throw new Error(`of a stop after a start it says ${readMessage()}`);
           stop = 'done';
         },
         stops() {
@@ -1932,7 +1932,7 @@ const PARTS = {
       for (let k = 1 + random.below(8); k > 0; k -= 1) {
         if (isGood && before.length) before[0].end('unheard'); // once more, and late
         await actions[random.of(['tells', 'tells', 'tells', ...Object.keys(actions)])]();
-        all.push(seen());
+        observations.push(observe());
         await passes(random.below(300));
       }
       const end = failure || (isGood ? 'stays' : random.of(['left', 'unheard']));
@@ -1943,8 +1943,8 @@ const PARTS = {
       if (end === 'unheard') ways[0].end('unheard');
       if (!isGood) await passes(1000);
       if (!isGood && wasMet && !noted('recorder', 'end', 'LOST')) throw new Error('the recording of who is gone goes on');
-      if (!isGood && wasMet && isUnsaid && !said().includes(text('say_not_confirmed'))) throw new Error(`nobody says that the stop is not confirmed: ${said()}`);
-      return { ends: [end], seen: [all, [...notes]] };
+      if (!isGood && wasMet && isUnsaid && !readMessage().includes(text('say_not_confirmed'))) throw new Error(`nobody says that the stop is not confirmed: ${readMessage()}`);
+      return { ends: [end], seen: [observations, [...notes]] };
     };
   },
 
@@ -1959,7 +1959,7 @@ const PARTS = {
     pageState.sideId.set('side_real');
     let delay = () => 5;
     let wasWanted = false; // which the page keeps
-    let robot = null, line = '', told = new Map();
+    let robot = null, line = '', toldValues = new Map();
     const python = {
       async ask({ robot: name }, bytes) {
         const text = new TextDecoder().decode(bytes);
@@ -1979,33 +1979,33 @@ const PARTS = {
       say() {},
       onWatchingChange() {},
     });
-    const seen = () => page.byId('senses').hidden || page.byId('gauges').children.map((row) => row.children[1].textContent);
+    const observe = () => page.byId('senses').hidden || page.byId('gauges').children.map((row) => row.children[1].textContent);
     return async (random, isGood) => {
       delay = () => (isGood ? 5 : random.below(200));
       robot = random.of(['tinibot', 'liner']);
-      told = new Map();
+      toldValues = new Map();
       line = '';
       watch.onRobotChange({ robot, owner: 'free', is_idle: true, is_running: false });
       if (!wasWanted) page.byId('link_watch').click();
       wasWanted = true;
-      const all = [seen()];
+      const observations = [observe()];
       for (let k = 1 + random.below(6); k > 0; k -= 1) {
         await passes(random.below(400));
         const sensors = devicesOf(robot, 'sensor').map(({ text }) => text), at = random.below(sensors.length);
         if (line.includes('SHOW')) {
           watch.onEvent({ event: 'SHOW', program: line, at, value: String(k) }, false);
-          told.set(sensors[at], String(k));
+          toldValues.set(sensors[at], String(k));
         }
         await passes(50);
-        all.push(seen());
-        const shown = page.byId('senses').hidden ? 0 : page.byId('gauges').children.filter((row) => row.children[1].textContent).length;
-        if (shown !== told.size) throw new Error(`${shown} sensors are seen, and ${told.size} were told`);
+        observations.push(observe());
+        const shownCount = page.byId('senses').hidden ? 0 : page.byId('gauges').children.filter((row) => row.children[1].textContent).length;
+        if (shownCount !== toldValues.size) throw new Error(`${shownCount} sensors are seen, and ${toldValues.size} were told`);
       }
-      const end = told.size ? 'told' : 'silent';
+      const end = toldValues.size ? 'told' : 'silent';
       robot = null;
       watch.onRobotChange(null);
       await passes(500);
-      return { ends: [end], seen: [all, line] };
+      return { ends: [end], seen: [observations, line] };
     };
   },
 
@@ -2045,11 +2045,11 @@ const PARTS = {
       views: { isBusy: false, showMates() {}, join: (shared) => { group = shared; } },
       panel: { onGroupEvent: () => { isWitness = true; }, endWitness: () => { isWitness = false; } },
     }, { onStateChange() {}, onBug() {}, onMatesChange: (all) => { others = all; } });
-    let asked = []; // of the class, since the newest join or leave
+    let requests = []; // of the class, since the newest join or leave
     let isGone = () => false;
     playsFetch(async (_, { body }) => {
       const request = JSON.parse(body);
-      asked.push(request.do);
+      requests.push(request.do);
       await later(delay());
       if (fails()) throw new Broken();
       if (request.do === 'group_join') return answers(fails() ? { failure: 'group_full' } : { group: request.name });
@@ -2081,12 +2081,12 @@ const PARTS = {
       await passes(isGood ? 0 : 50);
       if (!isOutside()) throw new Error(`something is left of a group: ${JSON.stringify([member.isInGroup, pageState.groupName.value, document.documentElement.dataset['group'], others, isWitness, undo, group, loadText('tiniscript.group', 'sessionStorage')])}`);
       await passes(1500);
-      asked = [];
+      requests = [];
       await passes(5000);
-      if (asked.length) throw new Error(`outside of all groups it asks ${asked}`);
+      if (requests.length) throw new Error(`outside of all groups it asks ${requests}`);
       member.join({ do: 'group_join', name: 'third' });
       await passes(3000);
-      const seen = [member.isInGroup, pageState.groupName.value, document.documentElement.dataset['group'], others.length, isWitness, group !== null, asked.length];
+      const seen = [member.isInGroup, pageState.groupName.value, document.documentElement.dataset['group'], others.length, isWitness, group !== null, requests.length];
       if (!member.isInGroup || pageState.groupName.value !== 'third' || !others.length) throw new Error(`it is not in the group: ${seen}`);
       member.leave();
       await passes(1500);
@@ -2241,7 +2241,7 @@ const PARTS = {
       let hasBegun = false;
       shared.showProgram({}, null).then(() => { hasBegun = true; });
       await passes(random.below(60));
-      const mine = [], theirs = [];
+      const ownActs = [], otherActs = [];
       const marks = () => { // lines that somebody else is in
         const found = [];
         for (const item of view.state.facet(EditorView.decorations)) if (typeof item !== 'function') item.between(0, view.state.doc.length, (from, _, { spec }) => { if (/cm-beside/.test(spec.class)) found.push(view.state.doc.lineAt(from).number); });
@@ -2256,14 +2256,14 @@ const PARTS = {
       const actions = {
         types() { // a line, sign by sign
           const name = `m${(count += 1)}`;
-          mine.push(name);
+          ownActs.push(name);
           const { length: end } = view.state.doc;
           if (end) writes('\n', end);
           for (const sign of name) writes(sign, view.state.doc.length);
         },
         adds() { // by a block, or a repair
           const name = `b${(count += 1)}`;
-          mine.push(name);
+          ownActs.push(name);
           view.dispatch({ changes: { from: 0, insert: view.state.doc.length ? `${name}\n` : name }, userEvent: 'input.blocks' });
         },
         moves: () => view.dispatch({ selection: { anchor: random.below(view.state.doc.length + 1) } }),
@@ -2277,7 +2277,7 @@ const PARTS = {
         },
         others() {
           const name = `t${(count += 1)}`;
-          theirs.push(name);
+          otherActs.push(name);
           room.log.push({ uid: name, kind: 'insert', id: name, after: random.of(room.lines)?.id, text: name });
           apply(room.lines, room.log.at(-1));
         },
@@ -2312,7 +2312,7 @@ const PARTS = {
       const assertSame = (actual, expected, label) => { if (JSON.stringify(actual) !== JSON.stringify(expected)) throw new Error(`${label}: ${JSON.stringify(actual)} in place of ${JSON.stringify(expected)}`); };
       const lines = linesIn(view.state.doc.toString());
       assertSame(lines, room.lines.map(({ text }) => text), 'the program');
-      for (const name of [...mine, ...theirs]) if (lines.filter((line) => line === name).length !== 1) throw new Error(`${name} is ${lines.filter((line) => line === name).length} times in ${lines}`);
+      for (const name of [...ownActs, ...otherActs]) if (lines.filter((line) => line === name).length !== 1) throw new Error(`${name} is ${lines.filter((line) => line === name).length} times in ${lines}`);
       const mates = room.others.map(({ at, name, writes: isWriting }) => [room.lines.findIndex(({ id }) => id === at) + 1, isWriting ? `${name} …` : name]).filter(([line]) => line);
       assertSame(heard.places.map(({ line, label }) => [line, label]), [...mates, ...known.drafts.map((item) => [item, textFor('group_draft')])], 'where the others are, and what no other page has');
       assertSame(heard.others, room.others, 'who is here');
@@ -2349,20 +2349,20 @@ const PARTS = {
     let classes = 0;
     return async (random, isGood) => {
       const key = `class ${(classes += 1)}`;
-      const told = [];
-      const taken = [];
+      const runs = [];
+      const takenRuns = [];
       let version = 0;
       let others = 0; // as of this version
       let isLost = () => random() < 0.3;
       const asks = async () => {
         const [known, number] = heard.position.ran;
-        const answer = { saw: version, ran: [key, told.length], runs: told.filter((item) => known !== key || item > number).map((item) => ({ number: item })) };
+        const answer = { saw: version, ran: [key, runs.length], runs: runs.filter((item) => known !== key || item > number).map((item) => ({ number: item })) };
         await later(random.below(200));
         if (isLost()) return;
         others = answer.saw;
-        taken.push(...heard.take(answer).map((item) => item.number));
+        takenRuns.push(...heard.take(answer).map((item) => item.number));
       };
-      const actions = { asks, tells: () => told.push(told.length + 1), moves: () => { version += 1; } };
+      const actions = { asks, tells: () => runs.push(runs.length + 1), moves: () => { version += 1; } };
       let end = '';
       for (let k = 2 + random.below(30); k > 0; k -= 1) {
         end = random.of(['asks', ...Object.keys(actions)]);
@@ -2372,14 +2372,14 @@ const PARTS = {
       await passes(200); // a class that has ended answers no more
       if (!isGood) return { ends: [end], seen: false };
       isLost = () => false;
-      const hasHeard = () => JSON.stringify(heard.position) === JSON.stringify({ saw: version, ran: [key, told.length] });
+      const hasHeard = () => JSON.stringify(heard.position) === JSON.stringify({ saw: version, ran: [key, runs.length] });
       for (let k = 0; k < 2 && !hasHeard(); k += 1) { // else its request is held
         actions.asks();
         await passes(200);
       }
-      if (!hasHeard()) throw new Error(`it has heard ${JSON.stringify(heard.position)} of ${version}, ${told.length}`);
-      if (`${taken}` !== `${told}` || others !== version) throw new Error(`it takes ${taken}, ${others} of ${told}, ${version}`);
-      return { ends: [end], seen: taken };
+      if (!hasHeard()) throw new Error(`it has heard ${JSON.stringify(heard.position)} of ${version}, ${runs.length}`);
+      if (`${takenRuns}` !== `${runs}` || others !== version) throw new Error(`it takes ${takenRuns}, ${others} of ${runs}, ${version}`);
+      return { ends: [end], seen: takenRuns };
     };
   },
 
@@ -2387,7 +2387,7 @@ const PARTS = {
   // anew, however late its answers come, and what is pressed then starts.
   async orders() {
     let delay = () => 5;
-    let wants = ''; // what was pressed since the newest STOP
+    let wantedAction = ''; // what was pressed since the newest STOP
     let stops = 0;
     let wrong = '';
     let started = 0;
@@ -2404,7 +2404,7 @@ const PARTS = {
         }
         async ask({ do: action, runs }) {
           const starts = action === 'start' || action === 'live' || (action === 'upload' && runs);
-          if (starts && !wants) wrong = action;
+          if (starts && !wantedAction) wrong = action;
           const before = stops;
           await later(delay()); // what is asked before a stop and comes after it is void
           if (before !== stops) return { failure: 'stopped_elsewhere' };
@@ -2449,7 +2449,7 @@ const PARTS = {
       ends: (random) => robot.heard.onEvent(random.of([{ event: 'DONE' }, { event: 'STOPPED', cause: 'BUTTON' }])),
     };
     const stop = (random) => {
-      wants = '';
+      wantedAction = '';
       if (random() < 0.5) page.byId('stop').click();
       else dispatchEvent(Object.assign(new Event('keydown'), { key: 'Escape' }));
     };
@@ -2460,7 +2460,7 @@ const PARTS = {
         end = random.of(['stop', 'stop', ...Object.keys(presses), ...Object.keys(presses), ...Object.keys(others)]);
         if (end === 'stop') stop(random);
         else if (presses[end]) {
-          wants = end;
+          wantedAction = end;
           presses[end]();
         } else others[end](random);
         await passes(random() < 0.7 ? random.below(60) : random.below(900));
@@ -2470,11 +2470,11 @@ const PARTS = {
       await passes(1500);
       others.ends(random);
       const before = started;
-      wants = random.of(['run', 'start', 'line']);
-      presses[wants]();
+      wantedAction = random.of(['run', 'start', 'line']);
+      presses[wantedAction]();
       await passes(1500);
       if (wrong) throw new Error(`${wrong} after a STOP`);
-      if (started !== before + 1) throw new Error(`${wants} starts ${started - before} times`);
+      if (started !== before + 1) throw new Error(`${wantedAction} starts ${started - before} times`);
       stop(random);
       await passes(1500);
       return { ends: [end], seen: [] };
@@ -2518,9 +2518,9 @@ const PARTS = {
           if (request.do === 'upload') [this.hasText, this.wanted] = [true, pageState.breakpoints.value.length ? '3' : ''];
           if (this.isBusy && /FOREVER/.test(request.image)) wrong = 'sensors are watched in the place of a program';
           this.isBusy ||= request.do === 'upload' || request.do === 'start';
-          const asked = { at_ms: now(), request };
+          const sentRequest = { at_ms: now(), request };
           const { wanted, stops } = this;
-          this.open.add(asked);
+          this.open.add(sentRequest);
           const before = this.way;
           this.way = (async () => {
             await Promise.race([before === this.ended ? null : before, this.ended]);
@@ -2533,7 +2533,7 @@ const PARTS = {
           try {
             return await this.way;
           } finally {
-            this.open.delete(asked);
+            this.open.delete(sentRequest);
           }
         }
         does({ do: action, image, places, runs }, wanted) {
@@ -2590,9 +2590,9 @@ const PARTS = {
     const { Recorder } = await page.load('robot/recorder.js');
     const { Runs } = await page.load('virtual/runs.js');
     const { RobotPanel } = await page.load('robot/panel.js');
-    let said = '';
-    Object.defineProperty(page.byId('link_said'), 'textContent', { get: () => said, set(sentence) {
-      said = sentence;
+    let message = '';
+    Object.defineProperty(page.byId('link_said'), 'textContent', { get: () => message, set(sentence) {
+      message = sentence;
       if (sentence === text('say_waits') && ![...robot?.open ?? []].some(({ at_ms }) => now() - at_ms >= 2000)) throw new Error('it says that it waits, and does not');
     } });
     pageState.robotName.set('tinibot');
@@ -2686,43 +2686,43 @@ const PARTS = {
     const isWatched = () => page.byId('link_watch').attributes['aria-pressed'] === 'true';
     const gauges = () => page.byId('senses').hidden || page.byId('gauges').children.map((row) => row.children[1].textContent);
     const values = () => page.byId('link_values').hidden || page.byId('link_values').children.map((row) => row.children[1].textContent);
-    const seen = () => [
-      said, page.byId('link_doing').hidden || page.byId('link_doing').textContent, document.documentElement.dataset['halt'], structuredClone(pageState.robotRun.value),
+    const observe = () => [
+      message, page.byId('link_doing').hidden || page.byId('link_doing').textContent, document.documentElement.dataset['halt'], structuredClone(pageState.robotRun.value),
       values(), ['link_step', 'link_go_on', 'link_breakpoints'].map((id) => [page.byId(id).hidden, page.byId(id).disabled]),
       gauges(), isWatched(), [...plotted], robot?.isOwn && [page.byId('record_lacks').hidden || page.byId('record_lacks').textContent, runs.newestFirst[0]?.rows],
     ];
     /** The sensors are watched, and a program comes first, whatever was before. */
     const watchesAgain = async (byHand) => {
-      const is = (isOn, when) => { if (isWatched() !== isOn) throw new Error(`${isOn ? 'nothing is' : 'something is still'} watched ${when}`); };
+      const assertWatched = (isOn, when) => { if (isWatched() !== isOn) throw new Error(`${isOn ? 'nothing is' : 'something is still'} watched ${when}`); };
       robot.tell({ event: 'DONE' });
       await passes(100);
       if (!isWatched()) actions.watch();
       await passes(1500);
-      is(true, 'where somebody wants it');
+      assertWatched(true, 'where somebody wants it');
       actions.identify();
       await passes(1500);
-      is(true, 'after something else was asked');
+      assertWatched(true, 'after something else was asked');
       actions.upload();
       actions.starts();
-      is(false, 'beside a program');
+      assertWatched(false, 'beside a program');
       await passes(1500);
-      is(false, 'beside a program');
+      assertWatched(false, 'beside a program');
       robot.tell({ event: 'DONE' });
       await passes(1500);
-      is(true, 'after a program');
+      assertWatched(true, 'after a program');
       robot.tell({ event: 'SHOW', at: 0, value: '4', program: robot.line });
       await passes(50);
       if (gauges()[0][0] !== '4') throw new Error(`the gauges say ${gauges()} and not what is watched`);
       if (byHand) actions.stop();
       robot.tell({ event: 'STOPPED', cause: byHand ? 'SEQUENCE' : 'BUTTON' });
       await passes(3000);
-      is(false, 'after a STOP');
+      assertWatched(false, 'after a STOP');
       actions.upload();
       actions.starts();
       await passes(100);
       robot.tell({ event: 'DONE' });
       await passes(3000);
-      is(false, 'since a STOP');
+      assertWatched(false, 'since a STOP');
     };
     return async (random, isGood) => {
       const slow = () => (random() < 0.1 ? 2500 : random.below(300));
@@ -2734,7 +2734,7 @@ const PARTS = {
       types(0);
       info = { has_breakpoints: random() < 0.8, has_readings: random() < 0.5, ...random.of([{ is_running: true, is_idle: false }, { is_running: false, is_idle: true }, { is_running: false, is_idle: false }]) };
       panel.connectByHost('p');
-      const all = [seen()];
+      const observations = [observe()];
       await settles();
       robot.points = robot.wanted = '';
       const ends = new Set();
@@ -2744,7 +2744,7 @@ const PARTS = {
         const end = random.of(['starts', 'halts', 'shows', 'shows', ...Object.keys(actions)]);
         ends.add(end);
         await actions[end](random);
-        all.push([seen(), page.byId('link_shown').textContent]);
+        observations.push([observe(), page.byId('link_shown').textContent]);
         await passes(random.below(random.of([50, 400])));
         const { halt } = document.documentElement.dataset;
         if (wrong) throw new Error(wrong);
@@ -2754,7 +2754,7 @@ const PARTS = {
       await passes(8000);
       if (wrong) throw new Error(wrong);
       if (robot.watches && !isWatched()) throw new Error('its sensors are read, and nobody watches them');
-      all.push(seen());
+      observations.push(observe());
       if (isGood) await watchesAgain(random() < 0.5);
       else { // it is gone before the answer
         robot.tell({ event: 'DONE' });
@@ -2764,7 +2764,7 @@ const PARTS = {
       }
       robot.end(random.of(['left', 'unheard']));
       await passes(isGood ? 50 : random.below(200));
-      return { ends: [...ends], seen: all };
+      return { ends: [...ends], seen: observations };
     };
   },
 
@@ -2779,7 +2779,7 @@ const PARTS = {
     const { stopAll } = await page.load('robot/stops.js');
     const { text } = await page.load('page/texts.js');
     const place = page.byId('stops');
-    const shown = () => [place.hidden, place.dataset['confirmed'], place.children.map((item) => item.textContent ?? item)];
+    const observe = () => [place.hidden, place.dataset['confirmed'], place.children.map((item) => item.textContent ?? item)];
     return async (random, isGood) => {
       const late_ms = isGood ? 5 : 5 + random.below(700);
       const robots = ['A', 'B'].map((name) => ({ name, late_ms: random.of([100, 900, 1500, 1e9]) }));
@@ -2797,19 +2797,19 @@ const PARTS = {
       const seen = [];
       for (let k = isGood ? 60 : random.below(20); k > 0; k -= 1) {
         await passes(100);
-        if (k < 55) seen.push(shown()); // the answer is there
-        if (isAnswered && isGood && JSON.stringify(shown()).includes(text('stops_gone'))) throw new Error('it says that nobody has heard it, and all have');
+        if (k < 55) seen.push(observe()); // the answer is there
+        if (isAnswered && isGood && JSON.stringify(observe()).includes(text('stops_gone'))) throw new Error('it says that nobody has heard it, and all have');
       }
       if (!isGood && random() < 0.5) { // whatever gets lost, each that confirms is counted; where all is, that is said
         await passes(12_000);
-        const hasNotice = JSON.stringify(shown()).includes(text('stops_gone'));
-        if (isAnswered === hasNotice) throw new Error(`it is ${isAnswered ? 'heard' : 'lost'}, and it says ${shown()}`);
+        const hasNotice = JSON.stringify(observe()).includes(text('stops_gone'));
+        if (isAnswered === hasNotice) throw new Error(`it is ${isAnswered ? 'heard' : 'lost'}, and it says ${observe()}`);
         if (!isAnswered && lossRate < 0.5) throw new Error('it is not asked again');
         if (!isAnswered) return { ends: ['unheard'], seen };
         const confirmedCount = robots.filter((item) => item.late_ms < 1e6).length;
         if (place.dataset['confirmed'] !== `${confirmedCount}`) throw new Error(`${confirmedCount} have confirmed, and it says ${place.dataset['confirmed']}`);
         await passes(20_000); // a robot that has not confirmed may drive; that all stood says nothing of now
-        if (place.hidden === confirmedCount < robots.length) throw new Error(`${confirmedCount} have confirmed, and later it is ${place.hidden ? 'hidden' : `said: ${shown()}`}`);
+        if (place.hidden === confirmedCount < robots.length) throw new Error(`${confirmedCount} have confirmed, and later it is ${place.hidden ? 'hidden' : `said: ${observe()}`}`);
       } else if (!isGood) await passes(random.below(14_000)); // what it says of this stop hides nothing of the next one
       return { ends: [isGood ? 'over' : robots.some((item) => item.late_ms > 1e6) ? 'silent' : 'confirmed'], seen };
     };
@@ -2825,7 +2825,7 @@ const PARTS = {
       const { OwnWorlds } = await page.load('world/own.js');
       const { loadWorldTexts } = await page.load('programs/work.js');
       const unreadable = new Set();
-      let made = 0, delay = () => 5, asks = 0, isReady = true, wrong = '';
+      let madeCount = 0, delay = () => 5, asks = 0, isReady = true, wrong = '';
       const textOf = ({ id = 0 }) => (id % 7 ? `text of ${id}\n# no name` : '');
       const python = () => ({
         ready: later(isReady ? 0 : 200).then(() => { isReady = true; }),
@@ -2840,9 +2840,9 @@ const PARTS = {
       });
       let own = new OwnWorlds(python());
       let worlds = [null]; // the newest first
-      let kept = [null];
+      let keptWorlds = [null];
       let newest = 0; // of the times that they were kept
-      const has = () => [own.newestWorld, ...own.earlierWorlds].map((world) => world && [world.id, world.name]);
+      const readWorlds = () => [own.newestWorld, ...own.earlierWorlds].map((world) => world && [world.id, world.name]);
       const rowOf = (list) => list.map((world) => world && [world.id, world.name]);
       const assertSame = (actual, expected, label) => { if (JSON.stringify(actual) !== JSON.stringify(expected)) throw new Error(`${label}: ${JSON.stringify(actual)} in place of ${JSON.stringify(expected)}`); };
       const hasRoomFor = (hasRoom) => { window.localStorage.room = window.sessionStorage.room = hasRoom ? Infinity : 0; };
@@ -2852,7 +2852,7 @@ const PARTS = {
       };
       const actions = {
         draws() {
-          const world = { id: (made += 1), name: random.of(['', 'n', '# n']) }, isOther = random() < 0.6;
+          const world = { id: (madeCount += 1), name: random.of(['', 'n', '# n']) }, isOther = random() < 0.6;
           sets(world, isOther);
           own.setNewest(world, isOther);
         },
@@ -2864,22 +2864,22 @@ const PARTS = {
           sets(world, true);
         },
         keeps() {
-          const number = (newest += 1), now_ = worlds, hasRoom = random() < 0.8;
+          const number = (newest += 1), worldsBefore = worlds, hasRoom = random() < 0.8;
           hasRoomFor(hasRoom);
           own.storeTexts('tinibot').then((isKept) => {
             if (number !== newest) return assertSame(isKept, true, 'what a newer one says');
             assertSame(isKept, window.localStorage.room > 0, 'whether it is kept');
-            if (isKept) kept = [textOf(now_[0] ?? {}) ? now_[0] : kept[0], ...now_.slice(1)]; // one that nobody can write takes no other's place
+            if (isKept) keptWorlds = [textOf(worldsBefore[0] ?? {}) ? worldsBefore[0] : keptWorlds[0], ...worldsBefore.slice(1)]; // one that nobody can write takes no other's place
           }).catch((error) => { wrong = String(error); });
         },
         async reloads() {
           await passes(3000);
           hasRoomFor(true);
-          for (const world of kept) if (world && random() < 0.15) unreadable.add(world.id);
+          for (const world of keptWorlds) if (world && random() < 0.15) unreadable.add(world.id);
           isReady = random() < 0.5;
           own = new OwnWorlds(python());
           const isThere = ([world]) => Boolean(world && textOf(world) && !unreadable.has(world.id));
-          const [before, ...earlier] = kept, hadText = before && textOf(before);
+          const [before, ...earlier] = keptWorlds, hadText = before && textOf(before);
           let isWhole = null;
           own.restore().then((found) => { isWhole = found; });
           await passes(3000);
@@ -2903,11 +2903,11 @@ const PARTS = {
         ends.add(act);
         await actions[act]();
         await passes(random.of([0, 100, 2000]));
-        assertSame(has(), rowOf(worlds), `after it ${act}`);
+        assertSame(readWorlds(), rowOf(worlds), `after it ${act}`);
         if (wrong) throw new Error(wrong);
       }
       await passes(3000);
-      const [newestText, ...texts] = kept.map((world) => (world && textOf(world) ? `${world.name && `# ${world.name}\n`}${textOf(world)}` : ''));
+      const [newestText, ...texts] = keptWorlds.map((world) => (world && textOf(world) ? `${world.name && `# ${world.name}\n`}${textOf(world)}` : ''));
       assertSame(loadWorldTexts(), { newest: newestText, before: texts.filter(Boolean) }, 'what is kept');
       return { ends: [...ends], seen: [] };
     };
@@ -2971,12 +2971,12 @@ const PARTS = {
         if (end === 'enters' || end === 'opens') past = future = [];
         else if (end === 'undoes' || end === 'redoes') {
           const [from, to] = end === 'undoes' ? [past, future] : [future, past];
-          const wanted = from.at(-1) ?? before;
-          if (drawn() !== wanted) throw new Error(`it ${end} ${drawn()} and not ${wanted}`);
+          const expected = from.at(-1) ?? before;
+          if (drawn() !== expected) throw new Error(`it ${end} ${drawn()} and not ${expected}`);
           if (from.length) [past, future] = end === 'undoes' ? [past.slice(0, -1), [...to, before]] : [[...to, before], future.slice(0, -1)];
         } else if (drawn() !== before) [past, future] = [[...past, before], []];
-        const can = ['undo', 'redo'].map((id) => !page.byId(`world_${id}`).disabled);
-        if (`${can}` !== `${[past, future].map((item) => item.length > 0)}`) throw new Error(`after it ${end} it can ${can}`);
+        const enabledHistory = ['undo', 'redo'].map((id) => !page.byId(`world_${id}`).disabled);
+        if (`${enabledHistory}` !== `${[past, future].map((item) => item.length > 0)}`) throw new Error(`after it ${end} it can ${enabledHistory}`);
       }
       return { ends: [end], seen: [] };
     };
@@ -3006,8 +3006,8 @@ const PARTS = {
     let count = 0;
     let now_ms = 1e12;
     Date.now = () => (now_ms += 1);
-    let told = '';
-    pageState.note.subscribe((said) => { told ||= said; });
+    let refusal = '';
+    pageState.note.subscribe((said) => { refusal ||= said; });
     const refusals = ['not_kept', 'kept_too_long'].map((key) => textOf(key));
     const list = page.byId('versions');
     list.append(document.createElement('li')); // with the button for a new one
@@ -3017,24 +3017,24 @@ const PARTS = {
     const opens = () => {
       page.byId('my_programs').click();
       const shown = [page.byId('share').open, page.byId('programs').dataset.shared, page.byId('program_name').value, page.byId('public').value];
-      const wanted = [false, undefined, work.name.replace(/\.ts$/, ''), store.getItem('tiniscript.public') ?? ''];
-      if (JSON.stringify(shown) !== JSON.stringify(wanted)) throw new Error(`the window shows ${JSON.stringify(shown)} in place of ${JSON.stringify(wanted)}`);
+      const expected = [false, undefined, work.name.replace(/\.ts$/, ''), store.getItem('tiniscript.public') ?? ''];
+      if (JSON.stringify(shown) !== JSON.stringify(expected)) throw new Error(`the window shows ${JSON.stringify(shown)} in place of ${JSON.stringify(expected)}`);
     };
     const fits = (versions) => versions.length <= 40 && JSON.stringify(versions).length <= store.roomFor('tiniscript.versions')
       && (versions.length < 2 || versions.reduce((sum, { text }) => sum + text.length, 0) <= MOST_CHARACTERS);
     /** The newest are kept, as many as there is room for; where not even one is, all stay that were there. @returns whether this one is there */
-    const keeps = (act, before, wanted, version) => {
-      let most = version?.text.length > MOST_CHARACTERS ? 0 : wanted.length;
-      while (most && !fits(wanted.slice(0, most))) most -= 1;
-      const kept = most || !wanted.length ? wanted.slice(0, most) : before;
-      if (inForm(loadVersions()) !== inForm(kept)) throw new Error(`${act}: ${loadVersions().length} are kept in place of ${kept.length} of ${wanted.length}`);
+    const keeps = (act, before, expected, version) => {
+      let fitCount = version?.text.length > MOST_CHARACTERS ? 0 : expected.length;
+      while (fitCount && !fits(expected.slice(0, fitCount))) fitCount -= 1;
+      const kept = fitCount || !expected.length ? expected.slice(0, fitCount) : before;
+      if (inForm(loadVersions()) !== inForm(kept)) throw new Error(`${act}: ${loadVersions().length} are kept in place of ${kept.length} of ${expected.length}`);
       const isKept = !version || kept.includes(version);
-      if (refusals.includes(told) === isKept) throw new Error(`${act}: it is ${isKept ? '' : 'not '}kept, and the page says ${told}`);
+      if (refusals.includes(refusal) === isKept) throw new Error(`${act}: it is ${isKept ? '' : 'not '}kept, and the page says ${refusal}`);
       return isKept;
     };
     const does = (act) => {
       pageState.note.set('');
-      told = '';
+      refusal = '';
       return act();
     };
     return async (random, isGood) => {
@@ -3065,13 +3065,13 @@ const PARTS = {
             if (random() < 0.3) await passes(random.below(100));
           }
           const address = store.getItem('tiniscript.public') ?? location.href;
-          const wanted = form === 'line' ? lineOf(work.text) : address === 'nowhere' ? '' : await makeLink(work, address) ?? '';
+          const expected = form === 'line' ? lineOf(work.text) : address === 'nowhere' ? '' : await makeLink(work, address) ?? '';
           while (page.byId('programs').dataset.shared === 'asked') await passes(1); // what is packed waits for the real clock
           await passes(500);
           const shared = page.byId('shared');
-          if (shared.value !== wanted || shared.hidden !== !wanted || page.byId('programs').dataset.shared !== (wanted ? 'done' : 'wrong')) throw new Error(`${shared.value} is shared in place of ${wanted}`);
-          const isLine = page.byId('share_line').attributes['aria-pressed'] === 'true', told = page.byId('shared_told').textContent;
-          if (isLine !== (form === 'line') || told.startsWith(textOf('share_line_told')) !== isLine) throw new Error(`of a ${form} it says: ${told}`);
+          if (shared.value !== expected || shared.hidden !== !expected || page.byId('programs').dataset.shared !== (expected ? 'done' : 'wrong')) throw new Error(`${shared.value} is shared in place of ${expected}`);
+          const isLine = page.byId('share_line').attributes['aria-pressed'] === 'true', refusal = page.byId('shared_told').textContent;
+          if (isLine !== (form === 'line') || refusal.startsWith(textOf('share_line_told')) !== isLine) throw new Error(`of a ${form} it says: ${refusal}`);
         },
         async asks() { // and what comes of it nobody waits for
           if (!page.byId('programs').open) return;
@@ -3123,9 +3123,9 @@ const PARTS = {
         does(() => row.children[1].click());
         keeps('deletes', stored, stored.filter((item) => item !== deleted));
         if (random() < 0.5) storeVersion(random.of([{ text: `T(${(count += 1)});`.repeat(random.of([1, 10_000])), robot: 'tinibot', name: '' }, deleted])); // another tab does
-        const left = loadVersions(), again = left.find(({ text, robot }) => text === deleted.text && robot === deleted.robot);
+        const remaining = loadVersions(), restored = remaining.find(({ text, robot }) => text === deleted.text && robot === deleted.robot);
         does(() => row.children[0].click());
-        keeps('brings back', left, again ? left : [...left, deleted].sort((first, second) => second.at_ms - first.at_ms), again ?? deleted);
+        keeps('brings back', remaining, restored ? remaining : [...remaining, deleted].sort((first, second) => second.at_ms - first.at_ms), restored ?? deleted);
       }
       store.room = Infinity;
       return { ends: [...ends], seen: [] };
@@ -3213,10 +3213,10 @@ const PARTS = {
         return { steps, block_steps: steps, taught: [`of ${number}`] };
       },
     };
-    let may = 0; // see a world that follows from what was pressed
+    let pendingLooks = 0; // see a world that follows from what was pressed
     const driving = {
       async showLesson(number) {
-        may -= 1;
+        pendingLooks -= 1;
         await later(delay());
         world = number;
       },
@@ -3227,13 +3227,13 @@ const PARTS = {
     page.byId('lessons').hidden = false;
     const choice = page.byId('lesson');
     const opens = () => {
-      may += 1;
+      pendingLooks += 1;
       page.byId('side_lessons').click();
     };
     const goesOn = () => {
       const next = page.byId('lesson_next');
       if (next.disabled || next.hidden) return;
-      may += 1;
+      pendingLooks += 1;
       next.click();
     };
     const solves = async () => {
@@ -3244,7 +3244,7 @@ const PARTS = {
     };
     const chooses = (number) => {
       if (choice.disabled) return;
-      may = 1;
+      pendingLooks = 1;
       choice.value = String(number);
       choice.dispatchEvent(new Event('change'));
     };
@@ -3259,7 +3259,7 @@ const PARTS = {
         for (let k = random.below(4); k > 0; k -= 1) {
           await passes(random.below(150));
           const [name, hint] = [page.byId('lesson_name').textContent, page.byId('lesson_hint_said').children[0]?.children ?? ['']];
-          if (may < 0) throw new Error('the world begins again');
+          if (pendingLooks < 0) throw new Error('the world begins again');
           if (name && hint.join() !== name.replace('L', 'of ')) throw new Error(`beneath ${name} is a step ${hint}`);
         }
       }
@@ -3292,12 +3292,12 @@ const PARTS = {
     let answersLate = () => 5, loses = () => false, wrong = '';
     let info = null; // of the robot that is connected
     let newest = null; // what was pressed last: a stop, or a start, and what the robot has to know before
-    let wanted = []; // where it is to halt
-    let known = '', told = null; // where it halts, and what has said so
+    let haltPlaces = []; // where it is to halt
+    let known = '', breakRequest = null; // where it halts, and what has said so
     let isHalted = false, clock = 0; // whether its time stands
     let isPaused = false; // before its first instruction
     const fails = (message) => { wrong ||= message; };
-    const all = () => `${(isPaused ? [0, ...wanted] : wanted).slice(0, LINK.most_breakpoints)}`;
+    const all = () => `${(isPaused ? [0, ...haltPlaces] : haltPlaces).slice(0, LINK.most_breakpoints)}`;
     const debugging = new Debugging({
       async ask(request) {
         const { do: action } = request;
@@ -3306,15 +3306,15 @@ const PARTS = {
           else if (newest.hasPlaces && known !== all() && !(newest.isPaused && known.startsWith('0'))) fails(`it starts with ${known} in place of ${all()}`);
         }
         const isLost = loses();
-        if (action === 'break') [known, told] = [`${request.places}`, request]; // requests arrive in their order
+        if (action === 'break') [known, breakRequest] = [`${request.places}`, request]; // requests arrive in their order
         if (action === 'resume') {
           if (!isHalted) fails('what is not halted goes on');
           isHalted = false;
         }
-        const by = info;
+        const runInfo = info;
         await later(answersLate());
-        if (isLost && told === request && by === info) known = 'nobody knows';
-        if (isLost || by !== info) return null; // also of a robot that is gone
+        if (isLost && breakRequest === request && runInfo === info) known = 'nobody knows';
+        if (isLost || runInfo !== info) return null; // also of a robot that is gone
         return action === 'variables' ? { variables: [7] } : action === 'tasks' ? { tasks: [['RUNNING', 0], ['WAITING', 20]] } : { ok: true };
       },
       uploadPaused: () => actions.uploads(null, true), say() {}, sayAnew() {}, canGetHaltingFirmware: async () => false, getHaltingFirmware() {},
@@ -3323,7 +3323,7 @@ const PARTS = {
     });
     let program = null, isRunning = false, isStepping = false;
     const tells = (event) => debugging.onEvent(event);
-    const over = (starts) => {
+    const endRun = (starts) => {
       [isRunning, isHalted, isStepping] = [starts, false, false];
       if (!starts) isPaused = false;
       clock = 0;
@@ -3332,7 +3332,7 @@ const PARTS = {
       meets(random) {
         info = random() < 0.9 ? { has_breakpoints: random() < 0.8, is_running: random() < 0.2 } : null;
         [program, known, newest] = [null, '', null];
-        over(info?.is_running ?? false);
+        endRun(info?.is_running ?? false);
         debugging.onRobotChange(info);
       },
       uploads(random, paused = random() < 0.3) {
@@ -3340,13 +3340,13 @@ const PARTS = {
         program = programs[clock % 2];
         [known, isPaused] = ['', paused];
         newest = { kind: 'upload' };
-        const mine = newest, by = info, starts = !random || random() < 0.8;
+        const ownRun = newest, runInfo = info, starts = !random || random() < 0.8;
         const does = debugging.onUpload(program, paused);
-        if (Boolean(does) !== Boolean(info.has_breakpoints && (paused || wanted.length))) fails('its places are not sent');
+        if (Boolean(does) !== Boolean(info.has_breakpoints && (paused || haltPlaces.length))) fails('its places are not sent');
         if (!does) isPaused = false;
         later(answersLate()).then(() => {
-          if (by !== info) return;
-          if (newest === mine && starts) newest = { kind: 'start', hasPlaces: true, isPaused: paused }; // which halts at once, and gets what is new then
+          if (runInfo !== info) return;
+          if (newest === ownRun && starts) newest = { kind: 'start', hasPlaces: true, isPaused: paused }; // which halts at once, and gets what is new then
           does?.(starts);
         });
       },
@@ -3366,16 +3366,16 @@ const PARTS = {
       },
       breaks(random) {
         const lines = places.filter(() => random() < 0.3).map(([, line]) => line);
-        wanted = lines.map((line) => halts[line - 1]);
+        haltPlaces = lines.map((line) => halts[line - 1]);
         pageState.breakpoints.set(lines.map((line) => ({ line, column: 1, point: points[line - 1] })));
       },
       begins() {
         if (!info || isRunning) return;
-        over(true);
+        endRun(true);
         tells({ event: 'STARTED', is_program: true });
       },
       ends(random) {
-        over(false);
+        endRun(false);
         tells({ event: random.of(['DONE', 'FAULT', 'STOPPED', 'LOST']) });
       },
       halts(random) {
@@ -3431,21 +3431,21 @@ const PARTS = {
     let trims = 0;
     page.byId('record_play').hidden = true; // as in index.html
     const recorder = new Recorder({ runs: { addRun: (run) => runs.addRun(run), forgetOldest: () => { trims += 1; runs.forgetOldest(); } }, play() {} });
-    let sent = []; // the programs that robots have from here, the newest last
+    let sentPrograms = []; // the programs that robots have from here, the newest last
     const sends = (name, isSensing) => {
       const text = `// ${name}${isSensing ? ' DISTANCE' : ''}`;
       pageState.robotName.set('tinibot');
       pageState.programText.set(text);
-      sent = [...sent.filter((item) => item.name !== name), { name, text }].slice(-MOST_PROGRAMS);
+      sentPrograms = [...sentPrograms.filter((item) => item.name !== name), { name, text }].slice(-MOST_PROGRAMS);
       recorder.addProgram({ program: name, places: [], shows: [], variables: [] });
     };
-    let own = []; // what the newest run of ours has told, and when
+    let ownEvents = []; // what the newest run of ours has told, and when
     let ran = null; // its program
     let isOpen = false;
     let unread = false; // what a sensor of the newest run has read, and nobody knows
     let lacks = false; // the robot tells of no readings
     let began = null; // by the clock that stands in a halt; null before the first row of a run by the button
-    let halted = null, byButton = false, end_ms = null, over = 0;
+    let halted = null, byButton = false, end_ms = null, endedCount = 0;
     const goesOn = () => {
       if (halted !== null && began !== null) began += now() - halted;
       halted = null;
@@ -3455,23 +3455,23 @@ const PARTS = {
       goesOn();
       if (!isOpen) return;
       end_ms = Math.min(elapsed(), MOST_MS);
-      own.push([end_ms, event]);
+      ownEvents.push([end_ms, event]);
       isOpen = false;
-      over += 1;
+      endedCount += 1;
     };
     const begins = (name, at) => {
       ends('STOPPED');
-      [own, unread, halted] = [[], false, null];
-      ran = sent.find((item) => item.name === name) ?? null;
+      [ownEvents, unread, halted] = [[], false, null];
+      ran = sentPrograms.find((item) => item.name === name) ?? null;
       isOpen = ran !== null;
       [began, byButton, end_ms] = [at, at === null, null];
     };
-    const isFull = (at_ms) => own.length >= MOST_EVENTS || at_ms > MOST_MS;
-    const told = (rows) => {
+    const isFull = (at_ms) => ownEvents.length >= MOST_EVENTS || at_ms > MOST_MS;
+    const reportRows = (rows) => {
       if (isOpen) for (const row of rows) {
         began ??= now() - row[0];
         if (isFull(row[0])) { ends('STOPPED'); break; }
-        own.push(row);
+        ownEvents.push(row);
         unread ||= row[1].startsWith('UNREAD');
       }
       recorder.onEvent({ event: 'READING', rows });
@@ -3483,13 +3483,13 @@ const PARTS = {
         recorder.onRobotChange({ has_readings: !lacks });
       },
       ours(random) {
-        const { name } = random.of(sent), ms = random() < 0.2 ? random.below(50) : undefined;
+        const { name } = random.of(sentPrograms), ms = random() < 0.2 ? random.below(50) : undefined;
         if (ms !== undefined) lacks = true;
         begins(name, now());
         recorder.onEvent({ event: 'STARTED', program: name, is_program: true, ms });
       },
       waits(random) {
-        const { name } = random.of(sent);
+        const { name } = random.of(sentPrograms);
         begins(name, null);
         recorder.awaitButton(name);
       },
@@ -3508,14 +3508,14 @@ const PARTS = {
         if (isOpen) {
           began = Math.min(began ?? Infinity, now() - (ms ?? 0));
           if (isFull(elapsed())) ends('STOPPED');
-          else own.push([ms ?? elapsed(), `SHOW ${value}`]);
+          else ownEvents.push([ms ?? elapsed(), `SHOW ${value}`]);
         }
         recorder.onEvent({ event: 'SHOW', value, ms });
       },
       reads(random) { // in the robot's own time
         if (halted !== null) return;
         const at_ms = now() - (began ?? now() - 5);
-        told([[Math.round(at_ms), random.of(['READ DISTANCE 5', 'READ DISTANCE 7', 'UNREAD DISTANCE'])]]);
+        reportRows([[Math.round(at_ms), random.of(['READ DISTANCE 5', 'READ DISTANCE 7', 'UNREAD DISTANCE'])]]);
       },
       ends(random) {
         const event = random.of(['DONE', 'STOPPED', 'MISSED', 'LOST', 'RESTARTED']);
@@ -3549,15 +3549,15 @@ const PARTS = {
         if (k === 2 && random() < 0.08) {
           end = 'floods';
           actions.ours(random);
-          told(Array.from({ length: MOST_EVENTS + random.of([0, 9]) }, () => [elapsed(), 'READ DISTANCE 5']));
+          reportRows(Array.from({ length: MOST_EVENTS + random.of([0, 9]) }, () => [elapsed(), 'READ DISTANCE 5']));
         } else await actions[end](random);
         acted.add(end);
         await passes(random.below(300));
-        assertSame(page.byId('record_play').hidden, !own.length, 'nothing can be played');
-        assertSame(trims, over, 'those that have ended');
+        assertSame(page.byId('record_play').hidden, !ownEvents.length, 'nothing can be played');
+        assertSame(trims, endedCount, 'those that have ended');
         if (!ran) continue;
         const run = runs.newestFirst[0];
-        assertSame(run.rows, own, 'its rows');
+        assertSame(run.rows, ownEvents, 'its rows');
         assertSame([run.origin.text, run.origin.is_by_button, run.end_ms], [ran.text, byButton, end_ms], 'of which program, and until when');
         assertSame(run.readClock(), Math.min(MOST_MS, elapsed()), 'its clock');
         const older = runs.newestFirst[1];
@@ -3576,42 +3576,42 @@ const PARTS = {
     const page = freshPage();
     await learns(page);
     const { GivingWindow } = await page.load('class/giving.js');
-    const given = [];
-    const giving = new GivingWindow((key, pupil) => given.push([key, pupil]));
+    const handouts = [];
+    const giving = new GivingWindow((key, pupil) => handouts.push([key, pupil]));
     const list = giving.dialog.children[1].children[1];
     let works = 0;
     return async (random, isGood) => {
-      given.length = 0;
+      handouts.length = 0;
       const kept = [1, 2].map((k) => ({ key: `${(works += 1)}`, name: `N${k}`, lessons: [], given: 0, alike: [] }));
-      const all = [1, 2, 3, 4].map((number) => ({ number, name: `P${number}` }));
-      const chosen = new Map();
-      let here = [];
+      const allPupils = [1, 2, 3, 4].map((number) => ({ number, name: `P${number}` }));
+      const chosenPupils = new Map();
+      let presentPupils = [];
       const ends = new Set();
       for (let k = 2 + random.below(8); k > 0; k -= 1) {
-        here = all.filter(() => random() < 0.7);
-        for (const item of kept) item.alike = random.of([[], [1], [2], [1, 2]]).filter((number) => here.some((pupil) => pupil.number === number));
-        giving.show(kept, here);
+        presentPupils = allPupils.filter(() => random() < 0.7);
+        for (const item of kept) item.alike = random.of([[], [1], [2], [1, 2]]).filter((number) => presentPupils.some((pupil) => pupil.number === number));
+        giving.show(kept, presentPupils);
         kept.forEach(({ key, alike }, row) => {
           const [, , choice, give] = list.children[row].children;
-          const wanted = Number(chosen.get(key) ?? (alike.length === 1 ? alike[0] : 0));
-          const isHere = here.some(({ number }) => number === wanted);
+          const expected = Number(chosenPupils.get(key) ?? (alike.length === 1 ? alike[0] : 0));
+          const isHere = presentPupils.some(({ number }) => number === expected);
           if (give.disabled === isHere) throw new Error(`whom nobody has chosen: ${choice.value}`);
           if (!give.disabled) {
             give.click();
-            if (given.at(-1).join() !== `${key},${wanted}`) throw new Error(`${given.at(-1)} in place of ${wanted}`);
+            if (handouts.at(-1).join() !== `${key},${expected}`) throw new Error(`${handouts.at(-1)} in place of ${expected}`);
           }
-          ends.add(chosen.has(key) ? (isHere ? 'chosen' : 'gone') : isHere ? 'alike' : 'nobody');
-          if (random() < 0.3 && here.length) {
-            const number = String(random.of(here).number);
+          ends.add(chosenPupils.has(key) ? (isHere ? 'chosen' : 'gone') : isHere ? 'alike' : 'nobody');
+          if (random() < 0.3 && presentPupils.length) {
+            const number = String(random.of(presentPupils).number);
             choice.value = number;
             choice.dispatchEvent(new Event('change'));
-            chosen.set(key, number);
+            chosenPupils.set(key, number);
           }
         });
       }
       const windows = [giving.dialog.open];
-      giving.show([], here);
-      return { ends: [...ends], seen: isGood && [given.map(([, number]) => number), windows, list.children.length] };
+      giving.show([], presentPupils);
+      return { ends: [...ends], seen: isGood && [handouts.map(([, number]) => number), windows, list.children.length] };
     };
   },
 
@@ -3622,7 +3622,7 @@ const PARTS = {
     playsNavigator({});
     playsFetch(async () => { throw new Broken(); });
     await learns(page);
-    let asked = [];
+    let requests = [];
     let over = '';
     let isTold = false;
     const afterwards = []; // asked of a class that is known to be over
@@ -3631,7 +3631,7 @@ const PARTS = {
     playsFetch(async (_, { body }) => {
       const request = JSON.parse(body);
       if (isTold) afterwards.push(request.do);
-      asked.push(request.do);
+      requests.push(request.do);
       if (request.do === 'class_over') over = 'kept';
       const state = { code: '1', turn_s: 60, places: 2, over, goes_on: true, lessons: 1, kept: [], pupils: [], robots: [] };
       await later(delay());
@@ -3647,20 +3647,20 @@ const PARTS = {
     const [anew, more, end] = ['class_anew', 'class_anew', 'class_end'].map((key, k) => parts.filter((item) => item.type === 'button' && item.dataset['text'] === key)[k % 2]);
     const SURE_MS = 5000;
     const armed = new Map();
-    const presses = (button, what, detail = 1) => {
+    const presses = (button, requestName, detail = 1) => {
       const isSure = armed.has(button) && now() - armed.get(button) < SURE_MS;
-      const before = asked.filter((item) => item === what).length;
+      const before = requests.filter((item) => item === requestName).length;
       button.dispatchEvent(Object.assign(new Event('click'), { detail }));
-      const did = asked.filter((item) => item === what).length > before;
-      if (did !== (isSure && detail === 1)) throw new Error(`${what} ${did ? 'at a first press' : 'not at the second one'}`);
+      const did = requests.filter((item) => item === requestName).length > before;
+      if (did !== (isSure && detail === 1)) throw new Error(`${requestName} ${did ? 'at a first press' : 'not at the second one'}`);
       if (detail === 1 && isSure) armed.delete(button);
       else if (detail === 1) armed.set(button, now());
       return did;
     };
     return async (random, isGood) => {
       delay = () => (isGood ? 5 : 5 + random.below(900));
-      loses = (what) => !isGood && random() < 0.3 && what !== 'class_over';
-      asked = [];
+      loses = (requestName) => !isGood && random() < 0.3 && requestName !== 'class_over';
+      requests = [];
       const ends = new Set();
       for (let k = isGood ? 0 : 2 + random.below(8); k > 0; k -= 1) {
         const did = presses(random.of([anew, more]), 'class_anew', random() < 0.2 ? 2 : 1);
@@ -3668,7 +3668,7 @@ const PARTS = {
         await passes(random.of([1, 300, 3000, 4990, 5010, 8000]) + random.below(5));
       }
       if (!isGood) return { ends: [...ends], seen: false };
-      loses = (what) => over !== '' && what !== 'class_over' && random() < 0.5; // `tsc studio` has ended
+      loses = (requestName) => over !== '' && requestName !== 'class_over' && random() < 0.5; // `tsc studio` has ended
       delay = () => random.below(1500); // older answers come when it is known, if they come
       await passes(900 + random.below(400));
       while (!presses(end, 'class_over')) await passes(100);
@@ -3752,7 +3752,7 @@ const PARTS = {
       for (let k = isGood ? 1 : 1 + random.below(3); k > 0; k -= 1) {
         const own = { robot: null };
         const robot = own.robot = new DirectRobot(python, port(own), { onEvent() {}, onEnd: ({ reason }) => notes.push(reason) }, NO_KEYS);
-        const met = robot.connect('tinibot', 'en').then(() => 'met', ({ reason }) => reason);
+        const meetOutcome = robot.connect('tinibot', 'en').then(() => 'met', ({ reason }) => reason);
         await passes(isGood ? 1000 : random.below(random.of([20, 300, 1200])));
         if (!isGood && random() < 0.3 && state === 'open') goes();
         const wasOpening = state === 'opening';
@@ -3763,7 +3763,7 @@ const PARTS = {
         if (!isGood && !wasOpening && !hasHung && random() < 0.5) continue; // to the next one at once
         await passes(hasHung ? 12_000 : 1000);
         hasHung = false;
-        notes.push(await met);
+        notes.push(await meetOutcome);
         if (wasLeft) throw new Error('it is opened though it was left');
         if (state !== 'closed' || isHeld) throw new Error(`the port is ${state} after it was left: ${notes}`);
       }
@@ -3779,12 +3779,12 @@ const PARTS = {
     const { DirectRobot } = await page.load('robot/direct.js');
     let delay = () => 5;
     let breaks = () => false;
-    let given = []; // to the session
+    let sentRequests = []; // to the session
     let wrong = '';
     let bytes = [];
     const python = {
       async ask({ do: action, asked = [] }, data) {
-        given.push(...asked);
+        sentRequests.push(...asked);
         if (asked.filter((item) => item.do === 'keys').length > 1) wrong = 'what was held before is sent, too';
         if (action === 'link') bytes.push(...data);
         await later(delay());
@@ -3795,14 +3795,14 @@ const PARTS = {
     return async (random, isGood) => {
       delay = () => (isGood ? 5 : random.below(400));
       breaks = () => false;
-      [given, bytes] = [[], []];
+      [sentRequests, bytes] = [[], []];
       let hears = () => {};
       const port = { isRadio: true, lossReason: 'port_gone', async open(onData) { hears = onData; }, async write() {}, async close() {} };
       const robot = new DirectRobot(python, port, { onEvent() {}, onEnd() {} }, NO_KEYS);
       robot.connect('tinibot', 'en').catch(() => {});
       await passes(1000);
       const came = [];
-      const ended = [];
+      const endedNumbers = [];
       let asks = 0;
       let stopped = 0; // asks before the newest STOP
       let held = 0; // the newest of what was held
@@ -3810,12 +3810,12 @@ const PARTS = {
       const actions = {
         asks() {
           const number = (asks += 1);
-          robot.ask({ do: 'start', number }).then(() => ended.push(number), () => ended.push(number));
+          robot.ask({ do: 'start', number }).then(() => endedNumbers.push(number), () => endedNumbers.push(number));
         },
         presses() {
           const number = (asks += 1);
           held = number;
-          robot.press({ keys: number, number }).then(() => ended.push(number), () => ended.push(number));
+          robot.press({ keys: number, number }).then(() => endedNumbers.push(number), () => endedNumbers.push(number));
         },
         hears() {
           came.push(came.length % 256);
@@ -3823,7 +3823,7 @@ const PARTS = {
         },
         stops() {
           robot.stop();
-          given = [];
+          sentRequests = [];
           stopped = asks;
         },
         waits: () => {},
@@ -3833,20 +3833,20 @@ const PARTS = {
         end = random.of(['asks', ...Object.keys(actions)]);
         actions[end]();
         await passes(random.below(random.of([3, 300])));
-        const old = given.find(({ number }) => number <= stopped);
+        const old = sentRequests.find(({ number }) => number <= stopped);
         if (old) throw new Error(`${old.number} of ${stopped} is done after a STOP`);
-        if (new Set(given).size < given.length) throw new Error('something is done twice');
+        if (new Set(sentRequests).size < sentRequests.length) throw new Error('something is done twice');
         if (wrong) throw new Error(wrong);
       }
       await passes(3000);
-      if ([...ended].sort((one, other) => one - other).join() !== Array.from({ length: asks }, (_, k) => k + 1).join()) throw new Error(`${asks} were asked, and ${ended} have ended`);
-      const told = given.filter((item) => item.do === 'keys').map(({ number }) => number);
-      if (!robot.isOver && held > stopped && told.at(-1) !== held) throw new Error(`${held} is held, and the robot hears ${told}`);
+      if ([...endedNumbers].sort((one, other) => one - other).join() !== Array.from({ length: asks }, (_, k) => k + 1).join()) throw new Error(`${asks} were asked, and ${endedNumbers} have ended`);
+      const heardNumbers = sentRequests.filter((item) => item.do === 'keys').map(({ number }) => number);
+      if (!robot.isOver && held > stopped && heardNumbers.at(-1) !== held) throw new Error(`${held} is held, and the robot hears ${heardNumbers}`);
       if (!robot.isOver && `${bytes}` !== `${came}`) throw new Error(`${bytes} of ${came}`);
       if (robot.isOver) end = 'broken';
       robot.leave();
       await passes(100);
-      return { ends: [end], seen: isGood && ended };
+      return { ends: [end], seen: isGood && endedNumbers };
     };
   },
 
@@ -3857,7 +3857,7 @@ const PARTS = {
     const FILES = ['./', 'main.js'];
     const LANGUAGES = { es: ['es.json', 'es.zip'], pt: ['pt.json', 'pt.zip'] };
     /** What a browser keeps for an address, by the name of each store. @type {Map<string, Map<string, string>>} */
-    let kept = new Map();
+    let stores = new Map();
     let served = 0;
     let claimed = 0; // by which build the open pages are answered
     let loses = () => false;
@@ -3883,34 +3883,34 @@ const PARTS = {
     });
     const caches = {
       async open(name) {
-        if (!kept.has(name)) kept.set(name, new Map());
-        return storeOf(kept.get(name));
+        if (!stores.has(name)) stores.set(name, new Map());
+        return storeOf(stores.get(name));
       },
-      match: async (name, { cacheName = '' } = {}) => [...kept].filter(([store]) => !cacheName || store === cacheName).map(([, all]) => all.get(name)).find(Boolean),
-      delete: async (name) => kept.delete(name),
-      keys: async () => [...kept.keys()],
+      match: async (name, { cacheName = '' } = {}) => [...stores].filter(([store]) => !cacheName || store === cacheName).map(([, all]) => all.get(name)).find(Boolean),
+      delete: async (name) => stores.delete(name),
+      keys: async () => [...stores.keys()],
     };
     class Request { constructor(name, { cache }) { Object.assign(this, { name, cache }); } }
     /** The worker of a build. @returns {(kind: string, more?: object) => Promise<any>} */
     const worker = (version) => {
-      const heard = new Map();
-      const self = { addEventListener: (kind, callback) => heard.set(kind, callback), clients: { claim: async () => { claimed = version; } } };
+      const handlers = new Map();
+      const self = { addEventListener: (kind, callback) => handlers.set(kind, callback), clients: { claim: async () => { claimed = version; } } };
       new Function('self', 'caches', 'fetch', 'Request', 'VERSION', 'FILES', 'LANGUAGES', source)(self, caches, fetches, Request, `v${version}`, FILES, LANGUAGES);
       return async (kind, more = {}) => {
         let done = null;
         const takes = (promise) => { done = promise; };
-        heard.get(kind)({ waitUntil: takes, respondWith: takes, ...more });
+        handlers.get(kind)({ waitUntil: takes, respondWith: takes, ...more });
         return done;
       };
     };
     return async (random, isGood) => {
-      kept = new Map([['of others', new Map([['./', 'theirs']])]]);
+      stores = new Map([['of others', new Map([['./', 'theirs']])]]);
       before = new Map();
       const ends = new Set();
       let open = null; // the build that the page is of
       let version = 0;
-      const seen = new Set(); // its languages
-      const ended = async (promise) => {
+      const languages = new Set(); // its languages
+      const settlesWell = async (promise) => {
         let isDone = null;
         promise.then(() => { isDone = true; }, () => { isDone = false; });
         await passes(50);
@@ -3919,32 +3919,32 @@ const PARTS = {
       for (let k = 3 + random.below(8); k > 0; k -= 1) {
         loses = () => !isGood && random() < 0.15;
         const act = random.of(open ? ['builds', 'speaks', 'speaks', 'stranger'] : ['builds']);
-        if (act === 'stranger') kept.set(`tiniscript-studio-v${served + 1}`, new Map(['./?', ...FILES, 'es.json'].map((name) => [name, 'a stranger has put it there'])));
+        if (act === 'stranger') stores.set(`tiniscript-studio-v${served + 1}`, new Map(['./?', ...FILES, 'es.json'].map((name) => [name, 'a stranger has put it there'])));
         if (act === 'speaks') {
           const language = random.of(Object.keys(LANGUAGES));
-          if (await ended(open('message', { data: language }))) seen.add(language);
+          if (await settlesWell(open('message', { data: language }))) languages.add(language);
         }
         if (act === 'builds') {
           served += 1;
           const next = worker(served);
-          const isThere = await ended(next('install'));
+          const isThere = await settlesWell(next('install'));
           if (isThere) {
             [open, version] = [next, served];
-            await ended(open('activate'));
+            await settlesWell(open('activate'));
             if (claimed !== version) throw new Error(`the open pages are those of ${claimed}`);
-            if (`${[...kept.keys()].sort()}` !== `of others,tiniscript-studio-v${version}`) throw new Error(`it keeps ${[...kept.keys()]} of ${version}`);
+            if (`${[...stores.keys()].sort()}` !== `of others,tiniscript-studio-v${version}`) throw new Error(`it keeps ${[...stores.keys()]} of ${version}`);
           }
           ends.add(isThere ? 'installed' : 'lost');
         }
         if (!open) continue;
         loses = () => false;
-        let other = '';
-        open('fetch', { request: { name: 'other', method: 'GET', cache: 'reload' } }).then((found) => { other = found; });
+        let otherAnswer = '';
+        open('fetch', { request: { name: 'other', method: 'GET', cache: 'reload' } }).then((found) => { otherAnswer = found; });
         await passes(20);
-        if (other !== `other of ${served}`) throw new Error(`with a network it gives ${other}`);
+        if (otherAnswer !== `other of ${served}`) throw new Error(`with a network it gives ${otherAnswer}`);
         loses = () => true;
         if (await open('fetch', { request: { name: './robots', method: 'POST' } })) throw new Error('it answers for the server');
-        for (const name of ['./?', ...FILES, ...[...seen].flatMap((language) => LANGUAGES[language])]) {
+        for (const name of ['./?', ...FILES, ...[...languages].flatMap((language) => LANGUAGES[language])]) {
           let answer = '';
           open('fetch', { request: { name, method: 'GET' } }).then((found) => { answer = found; }, () => {});
           await passes(20);
@@ -3961,7 +3961,7 @@ const PARTS = {
   async kept() {
     const page = freshPage();
     const { forgetAll, loadText, storeText } = await page.load('page/kept.js');
-    const wanted = new Map();
+    const expected = new Map();
     return async (random, isGood) => {
       const stores = ['localStorage', 'sessionStorage'];
       const places = ['tiniscript.a', 'tiniscript.b'];
@@ -3969,14 +3969,14 @@ const PARTS = {
       const puts = (count) => {
         for (let k = count; k > 0; k -= 1) {
           const [store, place, value] = [random.of(stores), random.of(places), random.of(['', 'x', 'y'])];
-          if (storeText(place, value, store)) wanted.set(store + place, value);
-          for (const item of stores) for (const other of places) if (loadText(other, item) !== (wanted.get(item + other) ?? '')) throw new Error(`${loadText(other, item)} is at ${item} ${other}`);
+          if (storeText(place, value, store)) expected.set(store + place, value);
+          for (const item of stores) for (const other of places) if (loadText(other, item) !== (expected.get(item + other) ?? '')) throw new Error(`${loadText(other, item)} is at ${item} ${other}`);
         }
       };
       puts(random.below(8));
       if (isGood) return { ends: ['goes on'], seen: [] };
       forgetAll();
-      wanted.clear();
+      expected.clear();
       puts(random.below(8));
       const left = stores.flatMap((store) => [...window[store]].map(([place]) => place));
       if (`${left}` !== 'theirs,theirs') throw new Error(`${left} is on the device`);
@@ -4156,18 +4156,18 @@ const PARTS = {
         return { is_known: true };
       },
       async writeBlocks(form) {
-        const given = form.body.map((item) => item.text);
+        const formLines = form.body.map((item) => item.text);
         stood = blocks.layoutText;
         await later(delay());
         if (group !== this) return null;
         const { base } = this;
-        this.base = given;
+        this.base = formLines;
         if (isRefused) { // somebody else was first, and the text is as it was
           isRefused = false;
-          mine = mine.filter((line) => base.includes(line) || !given.includes(line));
+          ownLines = ownLines.filter((line) => base.includes(line) || !formLines.includes(line));
           return { is_shown: editor.text === textOf(form), text: textOf(form), places: [] };
         }
-        editor.put([...linesOf(editor.text).filter((line) => given.includes(line) || !base.includes(line)), ...given.filter((line) => !base.includes(line))].join('\n'));
+        editor.put([...linesOf(editor.text).filter((line) => formLines.includes(line) || !base.includes(line)), ...formLines.filter((line) => !base.includes(line))].join('\n'));
         return { is_shown: editor.text === textOf(form), text: textOf(form), places: [] };
       },
       settle: () => later(delay()),
@@ -4180,13 +4180,13 @@ const PARTS = {
     for (let k = 0; !blocks && k < 500; k += 1) await settles();
     const presses = (id) => page.byId(id).click();
     let count = 0;
-    let mine = []; // that have to stay in a group
+    let ownLines = []; // that have to stay in a group
     const actions = {
       types(random) {
         editor.hasFocus = random() < 0.6;
         const line = `t${(count += 1)}${random() < 0.3 ? '?' : ''}`;
         isTyped = true;
-        mine.push(line);
+        ownLines.push(line);
         editor.put(group || random() < 0.7 ? `${editor.text}\n${line}` : line);
         if (pane.dataset['state'] !== 'stale') fails('blocks pass for those of a text that was typed since');
       },
@@ -4203,9 +4203,9 @@ const PARTS = {
           blocks.isDragging = false;
           const isNew = random() < 0.7, line = isNew ? `b${(count += 1)}` : blocks.form.body.pop()?.text;
           hasFailed = false;
-          if (!isNew) mine = mine.filter((item) => item !== line);
+          if (!isNew) ownLines = ownLines.filter((item) => item !== line);
           else {
-            mine.push(line);
+            ownLines.push(line);
             blocks.form.body.push({ text: line, kind: 'word', bodies: [] });
           }
           hasTouched = textOf(blocks.form) !== blocks.shown;
@@ -4225,7 +4225,7 @@ const PARTS = {
       },
       views: (random) => presses(random.of(['view_blocks', 'view_text'])),
       robot() { // blocks of its own are made
-        [mine, hasTouched] = [[], false];
+        [ownLines, hasTouched] = [[], false];
         pageState.robotName.set('tinibot');
       },
       speaks: () => pageState.language.set('en'),
@@ -4254,12 +4254,12 @@ const PARTS = {
       },
       joins() {
         if (group) return;
-        [group, mine, hasTouched] = [makeGroup(), [], false];
+        [group, ownLines, hasTouched] = [makeGroup(), [], false];
         views.join(group);
       },
       refuses: () => { isRefused = true; },
       leaves() {
-        if (group) [group, mine, hasTouched] = [null, [], false];
+        if (group) [group, ownLines, hasTouched] = [null, [], false];
         views.join(null);
       },
       waits: () => {},
@@ -4288,7 +4288,7 @@ const PARTS = {
       const { range, sentence } = pageState.fault.value;
       if (blocks.has.fault !== JSON.stringify([range, sentence])) throw new Error(`${blocks.has.fault} is the fault at blocks`);
       if (blocks.has.running !== JSON.stringify(pageState.virtualRun.value.ranges)) throw new Error('what runs is not marked at blocks');
-      if (group) for (const line of mine) if (!linesOf(editor.text).includes(line)) throw new Error(`${line} is lost`);
+      if (group) for (const line of ownLines) if (!linesOf(editor.text).includes(line)) throw new Error(`${line} is lost`);
     };
     return async (random, isGood) => {
       delay = () => (isGood ? 5 : random.below(random.of([10, 400])));
@@ -4307,7 +4307,7 @@ const PARTS = {
         pageState.virtualRun.set({ ranges: [], isHeld: false });
         await rests();
         past = [];
-        mine = [];
+        ownLines = [];
         count = 0;
         isRefused = false;
       }
@@ -4399,17 +4399,17 @@ const PARTS = {
       const flat = (list) => list.flatMap((item) => [item, ...item.bodies.flatMap(flat)]);
       const essence = (form) => JSON.stringify([form.body, form.loose.map((item) => item.body)], ['kind', 'word', 'values', 'bodies', 'body', '0', '1', '2', '3', '4', '5']);
       let form = makeForm();
-      const has = { robot: 'tinibot', level: 'few', findings: [], running: [], fault: null, points: [], mates: [] };
+      const shownState = { robot: 'tinibot', level: 'few', findings: [], running: [], fault: null, points: [], mates: [] };
       let isAlone = ''; // which block is tried alone
       let closed = ''; // the message that somebody has put away
       const line = () => 1 + random.below(Math.max(1, flat(form.body).length));
       const at = (count) => Array.from({ length: random.below(count + 1) }, () => ({ line: line(), column: 1 }));
       const says = {
-        findings: () => blocks.showFindings(has.findings),
-        running: () => blocks.showRunning(has.running),
-        fault: () => blocks.showFault(has.fault, has.fault ? `why ${has.fault.line}` : ''),
-        points: () => blocks.showBreakpoints(has.points),
-        mates: () => blocks.showMates(has.mates),
+        findings: () => blocks.showFindings(shownState.findings),
+        running: () => blocks.showRunning(shownState.running),
+        fault: () => blocks.showFault(shownState.fault, shownState.fault ? `why ${shownState.fault.line}` : ''),
+        points: () => blocks.showBreakpoints(shownState.points),
+        mates: () => blocks.showMates(shownState.mates),
       };
       const actions = {
         shows() {
@@ -4419,15 +4419,15 @@ const PARTS = {
           for (const name of Object.keys(says)) says[name](); // as views.js does
         },
         findings() {
-          has.findings = at(2).map((place) => ({ ...place, severity: random.of(['mistake', 'warning']), message: 'm', on_blocks: { message: `at ${place.line}`, fix: '', spoken: {} } }));
+          shownState.findings = at(2).map((place) => ({ ...place, severity: random.of(['mistake', 'warning']), message: 'm', on_blocks: { message: `at ${place.line}`, fix: '', spoken: {} } }));
           says.findings();
         },
-        running() { has.running = at(2); says.running(); },
-        fault() { [has.fault = null] = at(1); says.fault(); },
-        points() { has.points = at(2); says.points(); },
-        mates() { has.mates = at(2).map((place) => ({ ...place, color: '#000', said: 'Luz' })); says.mates(); },
-        level() { blocks.setLevel(has.level = random.of(['few', 'usual', 'all'])); },
-        robot() { blocks.setRobot(has.robot = random.of(['tinibot', 'liner'])); },
+        running() { shownState.running = at(2); says.running(); },
+        fault() { [shownState.fault = null] = at(1); says.fault(); },
+        points() { shownState.points = at(2); says.points(); },
+        mates() { shownState.mates = at(2).map((place) => ({ ...place, color: '#000', said: 'Luz' })); says.mates(); },
+        level() { blocks.setLevel(shownState.level = random.of(['few', 'usual', 'all'])); },
+        robot() { blocks.setRobot(shownState.robot = random.of(['tinibot', 'liner'])); },
         speaks() {
           blocks.updateLanguage();
           isAlone = '';
@@ -4451,19 +4451,19 @@ const PARTS = {
           };
           list.hide();
           seen.focused = null;
-          let typed = '', shown = '';
+          let typed = '', searchText = '';
           for (let k = 4 + random.below(20); k > 0; k -= 1) {
             const did = random.of(['types', 'types', 'comes back', 'blocks', 'group', 'list', 'Escape', 'Enter', 'x']);
-            const goes = () => { [typed, shown] = ['', '']; };
+            const goes = () => { [typed, searchText] = ['', '']; };
             if (did === 'types') {
               input.value = typed = random.of(['', ' ', 'wait', 'qqqq']);
               seen.group = 'a group';
               input.dispatchEvent(new Event('input'));
-              shown = typed.trim();
+              searchText = typed.trim();
               if (seen.group) throw new Error('a group stays chosen');
             } else if (did === 'comes back') {
               input.dispatchEvent(new Event('focus'));
-              if (typed) shown = typed.trim();
+              if (typed) searchText = typed.trim();
             } else if (did === 'list') focusAt('blocklyFlyout');
             else if (did === 'blocks') {
               focusAt('blocklyBlock');
@@ -4471,9 +4471,9 @@ const PARTS = {
             } else if (did === 'group') {
               focusAt('blocklyToolbox');
               typed = '';
-              if (shown && !list.shown) throw new Error('the blocks of a group are hidden');
+              if (searchText && !list.shown) throw new Error('the blocks of a group are hidden');
               list.hide(); // Blockly shows those of the group
-              shown = '';
+              searchText = '';
             } else if (did === 'Escape') {
               key(did);
               goes();
@@ -4481,12 +4481,12 @@ const PARTS = {
               seen.focused = null;
             } else {
               key(did);
-              if (Boolean(seen.focused) !== (did === 'Enter' && shown !== '')) throw new Error(`with ${shown} the focus is ${seen.focused ? '' : 'not '}at what was found`);
+              if (Boolean(seen.focused) !== (did === 'Enter' && searchText !== '')) throw new Error(`with ${searchText} the focus is ${seen.focused ? '' : 'not '}at what was found`);
               seen.focused = null;
             }
             if (input.value !== typed) throw new Error(`after it ${did} ${input.value} is looked for in place of ${typed}`);
-            const found = list.shown?.map(({ kind }) => kind);
-            if (!shown !== !found || (shown && (found.includes('label') !== (shown === 'qqqq') || !found.length))) throw new Error(`after it ${did} ${found} is found of ${shown}`);
+            const foundKinds = list.shown?.map(({ kind }) => kind);
+            if (!searchText !== !foundKinds || (searchText && (foundKinds.includes('label') !== (searchText === 'qqqq') || !foundKinds.length))) throw new Error(`after it ${did} ${foundKinds} is found of ${searchText}`);
           }
           input.value = '';
           list.hide();
@@ -4503,7 +4503,7 @@ const PARTS = {
           blocks.show(form);
           isAlone = '';
           for (const name of Object.keys(says)) if (name !== 'running') says[name]();
-          has.running = [];
+          shownState.running = [];
           if (`${viewOf()}` !== `${before}`) throw new Error(`the view is ${viewOf()}, and was ${before}`);
           actions.speaks();
           if (`${viewOf()}` !== `${before}`) throw new Error(`in another language the view is ${viewOf()}, and was ${before}`);
@@ -4553,15 +4553,15 @@ const PARTS = {
           takes();
         },
         async runs() {
-          has.running = [];
+          shownState.running = [];
           says.running();
           await passes(3000);
           if (random() < 0.5) actions.scrolls();
           let before = viewOf(), isLeft = false;
           for (let k = random.below(6); k > 0; k -= 1) {
-            has.running = [{ line: line(), column: 1 }];
+            shownState.running = [{ line: line(), column: 1 }];
             says.running();
-            const box = workspace().getBlockById(blocks.lines[innermost(has.running[0])]?.[0])?.getBoundingRectangleWithoutChildren();
+            const box = workspace().getBlockById(blocks.lines[innermost(shownState.running[0])]?.[0])?.getBoundingRectangleWithoutChildren();
             const isSeen = () => {
               const { left, top, width, height } = workspace().getMetricsManager().getViewMetrics(true);
               if (box && !isLeft && (box.left < left || box.right > left + width || box.top < top || box.bottom > top + height)) throw new Error(`what runs is at ${box.left} ${box.top}, and ${[left, top, width, height]} is seen`);
@@ -4577,13 +4577,13 @@ const PARTS = {
             blocks.showRunning([]); // for a moment
             await passes(random.below(500));
           }
-          has.running = [];
+          shownState.running = [];
           says.running();
           await passes(3000);
           if (`${viewOf()}` !== `${before}`) throw new Error(`after a run the view is ${viewOf()}, and was ${before}`);
         },
         async grows() { // the robot, and is small again
-          has.running = [];
+          shownState.running = [];
           says.running();
           await passes(3000);
           actions.scrolls();
@@ -4603,11 +4603,11 @@ const PARTS = {
           const wrong = () => all().find((item) => item.classes?.has('wrong'));
           const openOf = (item) => Boolean(item?.getIcon(blockly.icons.WarningIcon.TYPE)?.getBubble());
           const tells = async (findings) => {
-            has.findings = findings;
+            shownState.findings = findings;
             says.findings();
             await passes(10);
           };
-          has.fault = null;
+          shownState.fault = null;
           says.fault();
           await tells([]);
           const mistake = [{ line: 1, column: 1, severity: 'mistake', message: 'm', on_blocks: { message: `${random()}`, fix: '', spoken: {} } }];
@@ -4652,18 +4652,18 @@ const PARTS = {
       const viewRect = (slack) => (({ left, top, width, height }) => new blockly.utils.Rect(top - slack, top + height + slack, left - slack, left + width + slack))(workspace().getMetricsManager().getViewMetrics(true));
       /** What somebody has done is the program now. */
       const takes = () => {
-        const found = blocks.readForm();
-        form = found.form;
-        blocks.setRanges(found.ids, flat(form.body).map((item, k) => (item.place = [k + 1, 1, k + 1, 9])));
+        const foundKinds = blocks.readForm();
+        form = foundKinds.form;
+        blocks.setRanges(foundKinds.ids, flat(form.body).map((item, k) => (item.place = [k + 1, 1, k + 1, 9])));
         for (const name of ['running', 'fault', 'points', 'findings', 'mates']) {
-          has[name] = name === 'fault' ? null : [];
+          shownState[name] = name === 'fault' ? null : [];
           says[name]();
         }
       };
       const wordsOf = (item) => [...item.classes ?? []].sort().join(' ');
       const innermost = (place) => {
-        const bodies = flat(form.body), found = bodies.findLastIndex(({ place: [first, , last] }) => place.line >= first && place.line <= last);
-        return found;
+        const bodies = flat(form.body), foundKinds = bodies.findLastIndex(({ place: [first, , last] }) => place.line >= first && place.line <= last);
+        return foundKinds;
       };
       const checks = (act) => {
         const { ids } = blocks.readForm(), list = flat(form.body);
@@ -4674,10 +4674,10 @@ const PARTS = {
         assertSame(hearers, firstHearers, 'who hears of what is done there');
         const wanted = new Map();
         const looks = (id, look) => id && wanted.set(id, [...new Set([...wanted.get(id) ?? [], look])]);
-        for (const place of has.running) looks(idAt(place), 'running');
-        for (const place of has.points) looks(idAt(place), 'breakpoint');
-        if (has.fault) looks(idAt(has.fault), 'fault');
-        for (const item of has.findings) if (item.severity === 'mistake') looks(idAt(item), 'wrong');
+        for (const place of shownState.running) looks(idAt(place), 'running');
+        for (const place of shownState.points) looks(idAt(place), 'breakpoint');
+        if (shownState.fault) looks(idAt(shownState.fault), 'fault');
+        for (const item of shownState.findings) if (item.severity === 'mistake') looks(idAt(item), 'wrong');
         if (isAlone) looks(isAlone, 'alone');
         for (const top of workspace().getTopBlocks(false)) if (!['program', 'def'].includes(top.type)) looks(top.id, 'loose');
         for (const item of all()) {
@@ -4685,15 +4685,15 @@ const PARTS = {
           const inBody = flat(list.filter((_, k) => ids[k] === item.id)).length, count = item.type === 'def' ? 1 : inBody;
           if (inBody || item.outputConnection) assertSame(blockly.ContextMenuRegistry.registry.getItem('blockDelete').displayText({ block: item }), count > 1 ? `Delete ${count} Blocks` : 'Delete Block', `the menu of ${item.type}`);
           assertSame(wordsOf(item), (wanted.get(item.id) ?? []).sort().join(' '), `the looks of ${item.type}`);
-          const said = [...has.fault && idAt(has.fault) === item.id ? [`why ${has.fault.line}`] : [], ...has.findings.filter((found) => idAt(found) === item.id).map((found) => found.on_blocks.message)].join('\n\n');
-          assertSame(item.getIcon(blockly.icons.WarningIcon.TYPE)?.getText() ?? '', said, `what is said at ${item.type}`);
+          const expectedWarnings = [...shownState.fault && idAt(shownState.fault) === item.id ? [`why ${shownState.fault.line}`] : [], ...shownState.findings.filter((foundKinds) => idAt(foundKinds) === item.id).map((foundKinds) => foundKinds.on_blocks.message)].join('\n\n');
+          assertSame(item.getIcon(blockly.icons.WarningIcon.TYPE)?.getText() ?? '', expectedWarnings, `what is said at ${item.type}`);
         }
         const count = all().filter((item) => item.type !== 'program' && !item.outputConnection).length;
         assertSame(blockly.ContextMenuRegistry.registry.getItem('workspaceDelete').displayText({ workspace: workspace() }), count > 1 ? `Delete ${count} Blocks` : 'Delete Block', 'the menu of all');
         if (!blockly.Msg.DELETE_ALL_BLOCKS.includes(` ${count} `)) throw new Error(`${blockly.Msg.DELETE_ALL_BLOCKS} is asked before ${count} are deleted`);
-        assertSame(all().flatMap((item) => item.getSvgRoot().children.filter(({ attributes }) => attributes?.class === 'mate_mark').map(() => item.id)).sort(), has.mates.flatMap(({ line: wantedLine }) => ids[list.findIndex(({ place }) => place[0] === wantedLine)] ?? []).sort(), 'whoever else is here');
+        assertSame(all().flatMap((item) => item.getSvgRoot().children.filter(({ attributes }) => attributes?.class === 'mate_mark').map(() => item.id)).sort(), shownState.mates.flatMap(({ line: wantedLine }) => ids[list.findIndex(({ place }) => place[0] === wantedLine)] ?? []).sort(), 'whoever else is here');
         const used = JSON.stringify(workspace().list).includes('"Y"');
-        if (has.level !== 'few' && used !== flat([...form.body, ...form.loose.flatMap((item) => item.body)]).some(({ kind, word }) => kind === 'assign' && word === 'Y')) throw new Error(`the list ${used ? 'has' : 'lacks'} a name of the program`);
+        if (shownState.level !== 'few' && used !== flat([...form.body, ...form.loose.flatMap((item) => item.body)]).some(({ kind, word }) => kind === 'assign' && word === 'Y')) throw new Error(`the list ${used ? 'has' : 'lacks'} a name of the program`);
         if (!container.querySelectorAll('.search').length || container.querySelectorAll('.search').length > 1) throw new Error('the search is not there once');
       };
       const ends = new Set();
@@ -4718,7 +4718,7 @@ const PARTS = {
         checks(act);
         noted.push([act, workspace().scale, workspace().scrollX, workspace().scrollY, JSON.parse(blocks.layoutText).length, structuredClone(workspace().list)]);
       }
-      has.running = [];
+      shownState.running = [];
       says.running();
       await passes(3000);
       return { ends: [...ends], seen: isGood && noted };
@@ -4749,15 +4749,15 @@ const PARTS = {
     const stage = new Stage({ setCamera: (from) => { camera = from; }, stop: () => { stops += 1; } });
     const [cameraButton, fullButton] = page.byId('runs_open').parent.children;
     const [writing, lessons] = ['writing', 'lessons'].map(page.byId);
-    const has = { full: false, big: false, held: false, whole: false, turns: 0 };
-    const shrinks = () => { has.big &&= ['running', 'paused'].includes(root.dataset['phase']); };
+    const viewState = { full: false, big: false, held: false, whole: false, turns: 0 };
+    const shrinks = () => { viewState.big &&= ['running', 'paused'].includes(root.dataset['phase']); };
     const key = (name, isTyped = false) => dispatchEvent(Object.assign(new Event('keydown'), { key: name, composedPath: () => (isTyped ? [Object.assign(document.createElement('textarea'))] : []) }));
     const moves = () => dispatchEvent(Object.assign(new Event('pointermove'), { pointerType: 'mouse', buttons: 0 }));
     let sides = 0;
     return async (random) => {
       delay = () => random.below(30);
       const actions = {
-        runs() { root.dataset['phase'] = 'running'; stage.enlarge(); has.big = true; has.whole = false; },
+        runs() { root.dataset['phase'] = 'running'; stage.enlarge(); viewState.big = true; viewState.whole = false; },
         pauses() { if (root.dataset['phase'] === 'running') root.dataset['phase'] = 'paused'; },
         async ends() {
           root.dataset['phase'] = 'ended';
@@ -4765,7 +4765,7 @@ const PARTS = {
           moves();
           stage.onRunEnd();
           await passes(250);
-          if (isOver || pageState.sideId.value === 'side_lessons') has.big = false; // its text is read again
+          if (isOver || pageState.sideId.value === 'side_lessons') viewState.big = false; // its text is read again
           isOver = false;
         },
         async rests() { // a mouse
@@ -4774,59 +4774,59 @@ const PARTS = {
             moves();
             writing.dispatchEvent(new Event('pointermove'));
             await passes(ms);
-            if (('big' in root.dataset) !== has.big) throw new Error('the room changes under a mouse that moves');
+            if (('big' in root.dataset) !== viewState.big) throw new Error('the room changes under a mouse that moves');
           }
           await passes(100);
           shrinks();
           isOver = false;
         },
         screens: () => pageState.screen.set(random.of(['studio', 'other'])),
-        types() { writing.dispatchEvent(new Event('focusin')); if (!has.held) shrinks(); },
-        holds() { writing.dispatchEvent(new Event('pointerdown')); has.held = true; },
+        types() { writing.dispatchEvent(new Event('focusin')); if (!viewState.held) shrinks(); },
+        holds() { writing.dispatchEvent(new Event('pointerdown')); viewState.held = true; },
         async lets() {
           dispatchEvent(new Event(random.of(['pointerup', 'pointercancel'])));
-          if (has.held && root.dataset['big'] !== undefined && !has.big) throw new Error('it is small before a press is over');
+          if (viewState.held && root.dataset['big'] !== undefined && !viewState.big) throw new Error('it is small before a press is over');
           await passes(1);
-          if (has.held) shrinks();
-          has.held = false;
+          if (viewState.held) shrinks();
+          viewState.held = false;
         },
-        reads() { lessons.dispatchEvent(new Event('click')); has.big = false; },
+        reads() { lessons.dispatchEvent(new Event('click')); viewState.big = false; },
         worlds() {
           stage.showWorld();
-          has.whole = true;
+          viewState.whole = true;
           if (pageState.sideId.value === 'side_lessons') shrinks();
         },
         judges() { stage.shrink(); shrinks(); },
         home() {
           pageState.screen.set('start');
           pageState.screen.set('studio');
-          has.full = has.big = false;
+          viewState.full = viewState.big = false;
         },
         same: () => pageState.sideId.set(pageState.sideId.value),
         other() {
           pageState.sideId.set(pageState.sideId.value !== 'side_lessons' && random() < 0.5 ? 'side_lessons' : `side ${(sides += 1)}`);
-          has.full = false;
+          viewState.full = false;
         },
-        fills() { if (random() < 0.5) fullButton.click(); else key('f'); has.full = !has.full; },
+        fills() { if (random() < 0.5) fullButton.click(); else key('f'); viewState.full = !viewState.full; },
         letter: () => key('f', true),
-        escape() { key('Escape'); has.full = false; },
+        escape() { key('Escape'); viewState.full = false; },
         async leaves() { // the browser's Escape, of which the page hears nothing else
           await passes(100);
           const before = stops, wasFilled = document.fullscreenElement !== null;
           fills(null);
           await passes(100);
-          if (stops - before !== Number(wasFilled && has.full)) throw new Error(`${stops - before} stops are pressed by leaving`);
-          if (wasFilled) has.full = false;
+          if (stops - before !== Number(wasFilled && viewState.full)) throw new Error(`${stops - before} stops are pressed by leaving`);
+          if (wasFilled) viewState.full = false;
         },
-        turns() { const before = camera; cameraButton.click(); has.turns += 1; if (camera === before) throw new Error('the camera stays'); },
+        turns() { const before = camera; cameraButton.click(); viewState.turns += 1; if (camera === before) throw new Error('the camera stays'); },
         async peeks() {
-          const over = stage.peek();
-          if (random() < 0.5) over();
+          const endPeek = stage.peek();
+          if (random() < 0.5) endPeek();
           await passes(random.below(2000));
           const isNewest = stage.peek();
           await passes(1600);
           if (!('peek' in root.dataset)) throw new Error('the robot is not in its corner');
-          over();
+          endPeek();
           isNewest();
         },
         waits: () => passes(300),
@@ -4836,12 +4836,12 @@ const PARTS = {
         const act = random.of(Object.keys(actions));
         ends.add(act);
         await actions[act]();
-        if (stage.isFull !== has.full || ('big' in root.dataset) !== has.big) throw new Error(`after ${act} it is ${Object.keys(root.dataset)} in place of ${JSON.stringify(has)}`);
-        if (!has.turns && camera !== (!has.whole && (has.full || has.big || 'peek' in root.dataset) ? 'near' : 'whole')) throw new Error(`after ${act} it is seen from ${camera}`);
+        if (stage.isFull !== viewState.full || ('big' in root.dataset) !== viewState.big) throw new Error(`after ${act} it is ${Object.keys(root.dataset)} in place of ${JSON.stringify(viewState)}`);
+        if (!viewState.turns && camera !== (!viewState.whole && (viewState.full || viewState.big || 'peek' in root.dataset) ? 'near' : 'whole')) throw new Error(`after ${act} it is seen from ${camera}`);
         await passes(random.below(60));
         if (random() < 0.7) continue;
         await passes(200);
-        if (Boolean(document.fullscreenElement) !== has.full) throw new Error(`after ${act} the screen is filled`);
+        if (Boolean(document.fullscreenElement) !== viewState.full) throw new Error(`after ${act} the screen is filled`);
       }
       await actions.lets();
       await passes(9000);
@@ -4864,12 +4864,12 @@ const PARTS = {
     new Phone(() => { real += 1; });
     page.byId('run').addEventListener('click', () => { virtual += 1; });
     const root = document.documentElement;
-    const has = { image: '00', count: 0, isAway: null };
+    const pageInputs = { image: '00', count: 0, isAway: null };
     const says = (image, count) => {
-      Object.assign(has, { image, count }, !count && { isAway: null });
+      Object.assign(pageInputs, { image, count }, !count && { isAway: null });
       pageState.checkResult.set({ image, findings: Array(count).fill({}) });
     };
-    const isAway = () => has.isAway ?? (pageState.view.value === 'blocks' && has.image !== '' && pageState.checkResult.value !== null);
+    const isAway = () => pageInputs.isAway ?? (pageState.view.value === 'blocks' && pageInputs.image !== '' && pageState.checkResult.value !== null);
     const turns = (isPhone) => {
       phone.matches = isPhone;
       phone.dispatchEvent(new Event('change'));
@@ -4882,17 +4882,17 @@ const PARTS = {
       checks: () => pageState.checkResult.set(null),
       sheet() {
         if (page.byId('sheet').hidden) return;
-        has.isAway = !isAway();
+        pageInputs.isAway = !isAway();
         page.byId('sheet').click();
       },
       run() {
         const { half, side } = root.dataset, isReal = phone.matches && side === 'side_real' && half === 'robot';
         const isWrong = pageState.checkResult.value?.image === '', before = [real, virtual];
-        if (phone.matches && !isReal && isWrong) has.isAway = false;
+        if (phone.matches && !isReal && isWrong) pageInputs.isAway = false;
         page.byId('run').click();
         if (`${[real, virtual]}` !== `${[before[0] + Number(isReal), before[1] + Number(!isReal)]}`) throw new Error('another robot runs');
-        const wanted = !phone.matches || isReal ? [half, side] : isWrong ? ['program', side] : ['robot', side === 'side_lessons' ? side : 'side_virtual'];
-        if (`${[root.dataset.half, root.dataset.side]}` !== `${wanted}`) throw new Error(`${[root.dataset.half, root.dataset.side]} is seen in place of ${wanted}`);
+        const expected = !phone.matches || isReal ? [half, side] : isWrong ? ['program', side] : ['robot', side === 'side_lessons' ? side : 'side_virtual'];
+        if (`${[root.dataset.half, root.dataset.side]}` !== `${expected}`) throw new Error(`${[root.dataset.half, root.dataset.side]} is seen in place of ${expected}`);
       },
       other: () => page.byId('other').click(),
       speaks: () => pageState.language.set('en'),
@@ -4918,7 +4918,7 @@ const PARTS = {
         actions[act](random);
         all.push([act, seen()]);
         if (act !== 'checks' && pageState.checkResult.value && (page.byId('writing').dataset.sheet === 'away') !== isAway()) throw new Error(`after ${act} the sheet is ${page.byId('writing').dataset.sheet}`);
-        if (page.byId('sheet').hidden !== !has.count) throw new Error('there is no way to what is said, or one to nothing');
+        if (page.byId('sheet').hidden !== !pageInputs.count) throw new Error('there is no way to what is said, or one to nothing');
         if ('phone' in root.dataset !== phone.matches || (phone.matches && page.byId('run').parent !== page.byId('bar'))) throw new Error('Run is out of reach');
       }
       return { ends: [...ends], seen: all };
@@ -4928,16 +4928,16 @@ const PARTS = {
   // A tab is loaded again and again, by an address with a code or without one, while other users' workers may read what it
   // asks, answers are lost and nothing can be kept: it asks with the token of its newest code, or says why it has none.
   async entering() {
-    let kept = [], isFull = false;
+    let storedItems = [], isFull = false;
     return async (random, isGood) => {
-      let ends = '', again = ''; // the address of a page that loads itself again
-      if (isGood) [kept, isFull] = [[], false];
+      let ends = '', reloadedCode = ''; // the address of a page that loads itself again
+      if (isGood) [storedItems, isFull] = [[], false];
       for (let k = 1 + random.below(5); k > 0; k -= 1) {
         const page = freshPage();
         const store = window.sessionStorage;
-        for (const [key, value] of kept) store.setItem(key, value);
+        for (const [key, value] of storedItems) store.setItem(key, value);
         if (isFull) store.room = 0;
-        const code = again || (random() < 0.6 ? Array.from({ length: 32 }, () => random.of([...'0123456789abcdef'])).join('') : '');
+        const code = reloadedCode || (random() < 0.6 ? Array.from({ length: 32 }, () => random.of([...'0123456789abcdef'])).join('') : '');
         const isAgain = code !== '' && store.getItem('tiniscript.loaded') === code;
         location.hash = code ? `#code=${code}` : random.of(['', '#code=12', '#other']);
         const { hash } = location, before = store.getItem('tiniscript.token') ?? '';
@@ -4966,12 +4966,12 @@ const PARTS = {
         const cached = new Set(['theirs', 'ours']);
         globalThis.caches = { keys: async () => [...cached], delete: async (name) => cached.delete(name) };
         ends = random.of(['given', 'given', 'used', 'lost']);
-        let asked = 0;
+        let entryCount = 0;
         const tokens = [];
         playsFetch(async (path, { headers, body }) => {
           tokens.push(headers['X-TiniScript-Token']);
           if (path !== './enter') return answers({ ports: [] });
-          asked += 1;
+          entryCount += 1;
           if (JSON.parse(body).code !== code || headers['X-TiniScript-Token']) throw new Error('another code is told');
           await later(5);
           if (ends === 'lost') throw new Broken();
@@ -4979,25 +4979,25 @@ const PARTS = {
         });
         let host = null;
         page.load('robot/host.js').then((found) => { host = found; });
-        const wasForeign = isForeign && code !== '';
+        const isEntryRefused = isForeign && code !== '';
         for (let tries = 0; !host && !reloads && tries < 200; tries += 1) {
           await settles();
           await passes(1);
         }
         const assertSame = (actual, expected, label) => { if (JSON.stringify(actual) !== JSON.stringify(expected)) throw new Error(`${label}: ${JSON.stringify(actual)} in place of ${JSON.stringify(expected)}`); };
-        again = reloads && random() < 0.8 ? code : '';
-        assertSame([registrations.filter(({ isOwn }) => isOwn).length, registrations.length, cached.size], [ownCount, wasForeign || !isForeign ? ownCount : registrations.length, wasForeign ? 0 : 2], 'what is registered, and kept');
-        if (wasForeign && !isFull && !isAgain) assertSame([reloads, asked, location.hash], [1, 0, hash], 'beside a worker of somebody else');
+        reloadedCode = reloads && random() < 0.8 ? code : '';
+        assertSame([registrations.filter(({ isOwn }) => isOwn).length, registrations.length, cached.size], [ownCount, isEntryRefused || !isForeign ? ownCount : registrations.length, isEntryRefused ? 0 : 2], 'what is registered, and kept');
+        if (isEntryRefused && !isFull && !isAgain) assertSame([reloads, entryCount, location.hash], [1, 0, hash], 'beside a worker of somebody else');
         else {
-          const token = wasForeign ? before : !code ? before : ends === 'given' ? `token ${code}` : '';
-          assertSame([host.entryFailure, host.hasHost, asked], [wasForeign ? 'host_worker' : !code || ends === 'given' ? '' : ends === 'used' ? 'host_used' : 'host_gone', token !== '', Number(code !== '' && !wasForeign)], `by ${hash}`);
-          if (code && !wasForeign) assertSame(location.hash, '', 'the address');
+          const token = isEntryRefused ? before : !code ? before : ends === 'given' ? `token ${code}` : '';
+          assertSame([host.entryFailure, host.hasHost, entryCount], [isEntryRefused ? 'host_worker' : !code || ends === 'given' ? '' : ends === 'used' ? 'host_used' : 'host_gone', token !== '', Number(code !== '' && !isEntryRefused)], `by ${hash}`);
+          if (code && !isEntryRefused) assertSame(location.hash, '', 'the address');
           await Promise.all([host.fetchPorts(), settles()]);
           assertSame(tokens.at(-1), token, 'the token');
-          if (!isFull && code && !wasForeign && ends === 'given') assertSame(store.getItem('tiniscript.token'), token, 'what is kept');
+          if (!isFull && code && !isEntryRefused && ends === 'given') assertSame(store.getItem('tiniscript.token'), token, 'what is kept');
         }
         store.room = Infinity;
-        kept = [...store];
+        storedItems = [...store];
         isFull = !isGood && random() < 0.3;
       }
       return { ends: [ends], seen: [] };
@@ -5020,21 +5020,21 @@ const PARTS = {
     pageState.robotName.set('tinibot');
     let delay = () => 5;
     let robot = null;
-    let wants = false; // a run
+    let wantsRun = false; // a run
     let startsAfterStop = false;
     let begun = 0;
     let worker = Promise.resolve(); // it does one thing after the other
     const program = { ...PROGRAM, places: [[0, 1, 1, 1, 9], [3, 2, 1, 2, 9]] };
-    let told = []; // where what runs stops
+    let sentBreakpoints = []; // where what runs stops
     const python = {
       ask(request) {
-        told = request.breakpoints ?? told;
+        sentBreakpoints = request.breakpoints ?? sentBreakpoints;
         if (request.do === 'power_on') {
-          startsAfterStop ||= !wants;
+          startsAfterStop ||= !wantsRun;
           begun += 1;
         }
-        const asked = robot;
-        worker = worker.then(() => later(delay())).then(() => (request.do === 'check' ? program : asked.answer(request)));
+        const askedRobot = robot;
+        worker = worker.then(() => later(delay())).then(() => (request.do === 'check' ? program : askedRobot.answer(request)));
         return worker;
       },
     };
@@ -5070,8 +5070,8 @@ const PARTS = {
       let end = '';
       for (let k = 3 + random.below(8); k > 0; k -= 1) {
         const way = random.of(Object.keys(ways));
-        if (way === 'run' || (way === 'step' && !['running', 'paused'].includes(dataset['phase']))) wants = true;
-        if (way === 'stop' || way === 'escape') wants = false;
+        if (way === 'run' || (way === 'step' && !['running', 'paused'].includes(dataset['phase']))) wantsRun = true;
+        if (way === 'stop' || way === 'escape') wantsRun = false;
         end = way;
         const before = begun;
         ways[way]();
@@ -5081,7 +5081,7 @@ const PARTS = {
         if (begun === before) throw new Error('it does not start');
       }
       ways.stop();
-      wants = false;
+      wantsRun = false;
       await passes(1500);
       if (startsAfterStop) throw new Error('it starts after a STOP');
       if (dataset['phase'] === 'running' || dataset['phase'] === 'paused') throw new Error('it goes on');
@@ -5093,16 +5093,16 @@ const PARTS = {
         await passes(600);
         pageState.breakpoints.set(pageState.breakpoints.value.slice(1));
         await passes(900);
-        if (isToRun && (told.length || pageState.virtualRun.value.ranges.length)) throw new Error(`a block that is tried stops at ${told}, or is seen in the text`);
+        if (isToRun && (sentBreakpoints.length || pageState.virtualRun.value.ranges.length)) throw new Error(`a block that is tried stops at ${sentBreakpoints}, or is seen in the text`);
         if ((begun > before) !== isToRun) throw new Error(isToRun ? 'a block that is tried does not run' : 'it runs in the place of the whole program');
       };
-      wants = true;
+      wantsRun = true;
       await tries(true);
       panel.play({ lesson: 1, seed: 1, until_ms: 900 });
       await passes(600);
       ways.points();
       await passes(600);
-      if (told.length) throw new Error(`a run that is shown stops at ${told}`);
+      if (sentBreakpoints.length) throw new Error(`a run that is shown stops at ${sentBreakpoints}`);
       ways.stop();
       await passes(1500);
       if (open) throw new Error('a block that was tried never ends');
@@ -5116,7 +5116,7 @@ const PARTS = {
       await passes(500);
       if (dataset['phase'] === 'running') await tries(false);
       ways.stop();
-      wants = false;
+      wantsRun = false;
       await passes(1500);
       return { ends: [end], seen: [] };
     };

@@ -21,8 +21,8 @@ globalThis.getComputedStyle = () => ({ getPropertyValue: (name) => name });
 globalThis.alert = () => {};
 
 class Fails extends Error {}
-const is = (found, wanted, what) => {
-  if (JSON.stringify(found) !== JSON.stringify(wanted)) throw new Fails(`${what}: ${JSON.stringify(found)} in place of ${JSON.stringify(wanted)}`);
+const is = (found, expected, what) => {
+  if (JSON.stringify(found) !== JSON.stringify(expected)) throw new Fails(`${what}: ${JSON.stringify(found)} in place of ${JSON.stringify(expected)}`);
 };
 const saidOf = (part) => (typeof part === 'string' ? part : [part.textContent, ...part.children.map(saidOf)].join(''));
 const press = (part) => part.dispatchEvent(new Event('click', { bubbles: true, cancelable: true }));
@@ -66,8 +66,8 @@ const PARTS = {
     };
     let screen = isProgram || !hasStart || location.hash === '#editor' ? 'program' : 'start';
     screens.openFirstScreen(isProgram, hasStart);
-    let told = [], beginning = null, isRefused = false;
-    const tells = (...what) => { told.push(what); };
+    let reports = [], beginning = null, isRefused = false;
+    const tells = (...what) => { reports.push(what); };
     new Start({
       putProgram: ({ text, robot, name }) => tells('put', text, robot, name),
       async runInWorld(world) {
@@ -76,14 +76,14 @@ const PARTS = {
       },
       onProgramShown: () => tells('see'), showSide: (id) => tells('side', id), leaveProgram: () => tells('leave'),
     });
-    is(told.splice(0), screen === 'program' ? [['see']] : [], 'told at first');
+    is(reports.splice(0), screen === 'program' ? [['see']] : [], 'told at first');
     const goes = (to) => {
       if (screen === to) return [];
       screen = to;
       focus = to === 'start' ? 'start' : 'home';
       return to === 'start' ? [['leave']] : beginning ? [] : [['see']];
     };
-    let focus = '', wanted = [], pushed = 0;
+    let focus = '', expected = [], pushed = 0;
     const shows = (to) => {
       if (screen !== to) pushed += 1;
       return goes(to);
@@ -91,12 +91,12 @@ const PARTS = {
     const actions = {
       home() {
         press(page.byId('home'));
-        wanted = shows('start');
+        expected = shows('start');
       },
       way() {
         const [way, side, place] = random.of([['write', 'side_virtual', 'writing'], ['lessons', 'side_lessons', 'lesson_page'], ['robot', 'side_real', 'side_real']]);
         press(page.byId(`start_${way}`));
-        wanted = [...shows('program'), ['side', side]];
+        expected = [...shows('program'), ['side', side]];
         focus = place;
       },
       begins() {
@@ -105,12 +105,12 @@ const PARTS = {
         let ends;
         beginning = { run: new Promise((good, bad) => { ends = { good, bad }; }), ends: () => ends };
         press(document.querySelectorAll(`[data-begin=${name}]`)[0]);
-        wanted = [['put', program, robot, `${text(`begin_${name}`).toLowerCase()}.ts`], ['side', 'side_virtual'], ['run', world]];
+        expected = [['put', program, robot, `${text(`begin_${name}`).toLowerCase()}.ts`], ['side', 'side_virtual'], ['run', world]];
         focus = 'stop';
       },
       runSeen() { // the run shows itself
         screens.showScreen('program');
-        wanted = shows('program');
+        expected = shows('program');
       },
       async ends() {
         if (!beginning) return;
@@ -121,18 +121,18 @@ const PARTS = {
         beginning = null;
         await settles();
         unhandled.splice(0);
-        wanted = [['see']];
+        expected = [['see']];
       },
       instead() {
         screens.showProgramInstead();
-        wanted = goes('program');
+        expected = goes('program');
         is(location.hash, '#editor', 'the address');
       },
       back() {
         location.hash = random.of(['', '#editor', '#p=given']);
         const isScreen = location.hash !== '#p=given';
         dispatchEvent(new Event('popstate'));
-        wanted = hasStart && isScreen ? goes(location.hash ? 'program' : 'start') : [];
+        expected = hasStart && isScreen ? goes(location.hash ? 'program' : 'start') : [];
       },
       keeps() {
         for (let k = random.of([1, 8]); k > 0; k -= 1) versions.storeVersion({ text: `F(${random.below(20)});\nB(1)`, robot: 'tinibot', name: random.of(['', 'one.ts']) });
@@ -155,14 +155,14 @@ const PARTS = {
         if (screen !== 'start' || !rows.length) return;
         const index = random.below(rows.length), { text: program, robot, name } = versions.loadVersions()[index];
         press(rows[index].querySelector('button'));
-        wanted = [['put', program, robot, name]];
+        expected = [['put', program, robot, name]];
       },
     };
     const checks = () => {
-      is(told, wanted, 'told');
+      is(reports, expected, 'told');
       is([pageState.screen.value, document.documentElement.dataset.screen, entries], [screen, screen, pushed], 'the screen');
       if (focus) is(document.activeElement?.id, focus, 'what has the focus');
-      [told, wanted] = [[], []];
+      [reports, expected] = [[], []];
       if (screen !== 'start') return;
       const earlier = versions.loadVersions();
       const times = new Intl.DateTimeFormat(pageState.language.value, { dateStyle: 'short', timeStyle: 'short' });
@@ -506,7 +506,7 @@ const PARTS = {
     const { Run, Runs } = await page.load('virtual/runs.js');
     const { RunsWindow } = await page.load('virtual/runs_window.js');
     const runs = new Runs(), dialog = page.byId('runs'), list = page.byId('runs_list'), said = page.byId('runs_said');
-    let answers = () => ({}), told = [], asked = [], saved = [];
+    let answers = () => ({}), reports = [], asked = [], saved = [];
     const python = {
       async ask(request, data) {
         asked.push([request.do, request.end_ms, request.text, data && new TextDecoder().decode(data)]);
@@ -516,7 +516,7 @@ const PARTS = {
     };
     URL.createObjectURL = (blob) => blob.text().then((content) => saved.push(content)) && 'blob:';
     URL.revokeObjectURL = () => {};
-    const runsWindow = new RunsWindow({ python, runs, show: (run) => told.push(['show', run.number]), play: (opened, known) => told.push(['play', opened.fileText, opened.text, known?.number]) });
+    const runsWindow = new RunsWindow({ python, runs, show: (run) => reports.push(['show', run.number]), play: (opened, known) => reports.push(['play', opened.fileText, opened.text, known?.number]) });
     let notice = '', note = '', kept = [];
     const REFUSALS = Object.keys(TEXTS).filter((key) => key.startsWith('record_'));
     const refuses = (name, error) => {
@@ -539,7 +539,7 @@ const PARTS = {
       if (!isReadable) refuses(file.name, text('unreadable'));
       else if (error) refuses(file.name, text(`record_${error}`, { line: 7 }));
       else {
-        is(told.splice(0), [['play', content, 'T', null]], 'what is played');
+        is(reports.splice(0), [['play', content, 'T', null]], 'what is played');
         is(dialog.open, false, 'the window stays');
         if (wasOpen) isOpen = false;
       }
@@ -569,7 +569,7 @@ const PARTS = {
         if (!isOpen || !kept.length) return;
         const index = random.below(kept.length);
         press(list.children[index].querySelectorAll('button')[0]);
-        is(told.splice(0), [['show', kept[index].number]], 'the run that is seen');
+        is(reports.splice(0), [['show', kept[index].number]], 'the run that is seen');
         isOpen = false;
       },
       async saves() {
@@ -613,12 +613,12 @@ const PARTS = {
         answers = () => ({ text: 'O', rows: [] });
         runsWindow.openData(new TextEncoder().encode('data'), 'n', known);
         await passes(50);
-        is(told.splice(0), [['play', 'data', 'O', known?.number]], 'what is played');
+        is(reports.splice(0), [['play', 'data', 'O', known?.number]], 'what is played');
         isOpen = false;
       },
     };
     const checks = () => {
-      is(told, [], 'what nobody asked for');
+      is(reports, [], 'what nobody asked for');
       is(dialog.open, isOpen, 'whether the window is open');
       if (isOpen) {
         is(said.textContent, notice, 'what is said');

@@ -17,12 +17,12 @@ STEP_COUNT = 250
 class Link:
     """A robot that does what it is asked, refuses it, or calls it no request."""
 
-    def __init__(self, chance: Random) -> None:
+    def __init__(self, rng: Random) -> None:
         self.has_run = False
         self.stop_count = 0
         self.asked: list[Json] = []
         self.open_requests: list[Json] = []
-        self._chance = chance
+        self._rng = rng
         self._news: list[Json] = []
 
     def stop(self) -> None:
@@ -37,9 +37,9 @@ class Link:
     def answer_some(self) -> list[Json]:
         """Answer some requests; return those that were accepted."""
         accepted = []
-        while self.open_requests and self._chance.random() < 0.6:
+        while self.open_requests and self._rng.random() < 0.6:
             request = self.open_requests.pop(0)
-            is_accepted = self._chance.random() < 0.5
+            is_accepted = self._rng.random() < 0.5
             result = {"ok": True} if is_accepted else {"failure": "BUSY"}
             self._news.append({"id": request["id"], **result})
             accepted += [request] * is_accepted
@@ -53,11 +53,11 @@ class Link:
 class Page:
     """A page that loses answers: then it sends its requests once more."""
 
-    def __init__(self, chance: Random) -> None:
+    def __init__(self, rng: Random) -> None:
         self.stop_count = 0
         self.made_requests: list[Json] = []
         self.heard_news: dict[int, Json] = {}
-        self._chance = chance
+        self._rng = rng
         self._unheard_requests: list[Json] = []
 
     @property
@@ -65,12 +65,12 @@ class Page:
         return max(self.heard_news, default=0)
 
     def make_requests(self) -> list[Json]:
-        for _ in range(self._chance.choice((0, 0, 1, 2))):
-            action = self._chance.choice(("upload", "upload", "start", "live", "stop", "nonsense"))
+        for _ in range(self._rng.choice((0, 0, 1, 2))):
+            action = self._rng.choice(("upload", "upload", "start", "live", "stop", "nonsense"))
             request = {
                 "id": len(self.made_requests) + 1,
                 "do": action,
-                "runs": self._chance.random() < 0.7,
+                "runs": self._rng.random() < 0.7,
                 "stops": self.stop_count,
                 "seen": self.seen_number,
             }
@@ -87,13 +87,13 @@ class Page:
 def test_each_request_has_one_end_and_each_stop_stops_once(seed: int) -> None:
     """No request is done twice, or after a stop that its page has pressed or not heard of; each has
     one answer. Who falls silent stops the robot once, and again after it was heard again."""
-    chance = Random(seed)
+    rng = Random(seed)
     now_s = began_s = 100.0
-    attending, link, page = Attending(lambda: now_s), Link(chance), Page(chance)
+    attending, link, page = Attending(lambda: now_s), Link(rng), Page(rng)
     heard_s, was_heard, is_told = began_s, False, False
     wants_stop, done_stops, latched_until_s, latch_number = False, 0, 0.0, 0
     refused_ids = set[int]()
-    first_beat = chance.randrange(12)  # the answer to its connect may come late, or never
+    first_beat = rng.randrange(12)  # the answer to its connect may come late, or never
     for step in range(STEP_COUNT):
         is_over = step > STEP_COUNT - 8  # time for what is under way
         actions = (
@@ -101,17 +101,17 @@ def test_each_request_has_one_end_and_each_stop_stops_once(seed: int) -> None:
             *(("beat",) * 6 + ("look",) * 3 + ("stop", "press") if step >= first_beat else ()),
             *(("latch",) if step % 8 == 0 else ()),
         )
-        match "beat" if is_over else chance.choice(actions):
+        match "beat" if is_over else rng.choice(actions):
             case "wait":
-                now_s += chance.choice((0.1, ATTENDED_S + 0.1, LATCH_S, LEFT_S + 0.1))
-                link.has_run = chance.random() < 0.7
+                now_s += rng.choice((0.1, ATTENDED_S + 0.1, LATCH_S, LEFT_S + 0.1))
+                link.has_run = rng.random() < 0.7
             case "press":
                 page.stop_count += 1
             case "connect":
                 attending.connect_again()
                 heard_s = heard_s if was_heard else now_s
             case "stop":
-                number = chance.choice((0, page.stop_count))
+                number = rng.choice((0, page.stop_count))
                 attending.stop(number)
                 if not number or number > done_stops:
                     wants_stop, done_stops = True, max(done_stops, number)
@@ -129,9 +129,9 @@ def test_each_request_has_one_end_and_each_stop_stops_once(seed: int) -> None:
                     refused_ids |= {item["id"] for item in requests if item["do"] != "stop"}
                 numbers = [item["number"] for item in news]
                 assert numbers == [page.seen_number + k for k in range(1, len(news) + 1)]
-                if is_over or chance.random() < 0.8:
+                if is_over or rng.random() < 0.8:
                     page.hear(news)
-        if chance.random() < 0.7 or is_over:
+        if rng.random() < 0.7 or is_over:
             accepted, stop_count, asked_count = link.answer_some(), link.stop_count, len(link.asked)
             expected_stops = int(wants_stop)
             if now_s - heard_s <= ATTENDED_S:

@@ -268,12 +268,12 @@ def test_the_page_requests_blocks_and_text() -> None:
 
 
 def test_a_very_long_program_stays_text() -> None:
-    asked_text = '{"do": "blocks", "robot": "tinibot"}'
+    request_text = '{"do": "blocks", "robot": "tinibot"}'
     short_program, long_program = (b"S;" * count for count in (MOST_BLOCKS, MOST_BLOCKS + 1))
-    assert len(json.loads(answer(asked_text, short_program))["body"]) == MOST_BLOCKS
-    assert json.loads(answer(asked_text, long_program)) == {"size": MOST_BLOCKS + 1}
+    assert len(json.loads(answer(request_text, short_program))["body"]) == MOST_BLOCKS
+    assert json.loads(answer(request_text, long_program)) == {"size": MOST_BLOCKS + 1}
     deep_program = f"X = {'(' * 5000}1{')' * 5000}{' + 1' * MOST_BLOCKS}"
-    assert json.loads(answer(asked_text, deep_program.encode())) == {"size": 2 * MOST_BLOCKS + 2}
+    assert json.loads(answer(request_text, deep_program.encode())) == {"size": 2 * MOST_BLOCKS + 2}
     assert size_of(read_blocks("/// F(1, 2)", TINIBOT)) == 3
 
 

@@ -147,9 +147,9 @@ def test_only_touched_blocks_change_and_keep_their_ids(seed: int) -> None:
     touched_ids: set[str] = set()
     for _ in range(rng.randrange(1, 5)):
         touched_ids |= changes(ana.form["body"], rng, lambda: f"n{next(ana.numbers)}")
-    wanted_text = format_blocks(from_data(ana.form)).text
+    expected_text = format_blocks(from_data(ana.form)).text
     answer = ana.writes()
-    assert ana.text == wanted_text == text_of(page_together._newest.page.view)  # type: ignore[union-attr]
+    assert ana.text == expected_text == text_of(page_together._newest.page.view)  # type: ignore[union-attr]
     assert answer["is_shown"]
     ana.sends()
     assert text_of(program.tree) == ana.text

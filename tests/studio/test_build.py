@@ -125,8 +125,8 @@ def test_a_plural_has_the_form_of_its_number() -> None:
         forms = texts[""]
         for number in (*range(200), 1000, 1001, 2101, 1_000_000):
             form = forms[number if number < 100 else 100 + number % 100]
-            wanted_text = plural_text("studio", "mistakes", number, language)
-            assert texts["mistakes"][int(form)] == wanted_text, (language, number)
+            expected_text = plural_text("studio", "mistakes", number, language)
+            assert texts["mistakes"][int(form)] == expected_text, (language, number)
 
 
 def test_no_text_is_inserted_as_markup() -> None:
@@ -314,13 +314,13 @@ def test_firmware_is_beside_the_page_and_not_counted_in_its_size(
         studio.bring_firmware(tmp_path / "page")
     monkeypatch.setattr(ready, "files", lambda: [brought_ready_file])
     studio.bring_firmware(tmp_path / "page")
-    given_fields = serving.with_firmware({})
-    assert {path.name for path in (tmp_path / "page").iterdir()} == set(given_fields)
-    for name, file in given_fields.items():
+    served_files = serving.with_firmware({})
+    assert {path.name for path in (tmp_path / "page").iterdir()} == set(served_files)
+    for name, file in served_files.items():
         assert (tmp_path / "page" / name).read_bytes() == file.data
-    [row] = json.loads(given_fields[serving.FIRMWARE_FILE].data)
+    [row] = json.loads(served_files[serving.FIRMWARE_FILE].data)
     assert row == {"title": "tinibot", "board": "uno", "file": brought_ready_file.path.name}
-    assert given_fields[row["file"]].data == brought_ready_file.path.read_bytes()
+    assert served_files[row["file"]].data == brought_ready_file.path.read_bytes()
     assert len(studio.size_rows(tmp_path / "page")) == 2  # the head, and the sum
 
 

@@ -75,8 +75,8 @@ def test_messages_match_the_command_and_repairs_help(first_index: int, part: int
      ("SI|S // /// W(1)\n/// not a program", 0), ("F(-2, 80)\n/// W(1)", 1)],
 )  # fmt: skip
 def test_loose_blocks_are_counted(text: str, loose_count: int) -> None:
-    asked_text = '{"do": "check", "robot": "tinibot", "language": "en"}'
-    assert json.loads(worker.answer(asked_text, text.encode()))["loose"] == loose_count
+    request_text = '{"do": "check", "robot": "tinibot", "language": "en"}'
+    assert json.loads(worker.answer(request_text, text.encode()))["loose"] == loose_count
 
 
 def test_a_program_too_large_for_the_robot_is_a_mistake() -> None:
@@ -91,7 +91,7 @@ def test_the_first_value_of_a_variable_is_offered_in_place_of_its_declaration() 
 
 
 @pytest.mark.parametrize(
-    ("program", "wanted_text"),
+    ("program", "expected_text"),
     [
         ("R(90, 60)", "R(90 DEG, 60)"),
         ("SI|F(30, 60)  // 30 cm", "SI|F(30 CM, 60)  // 30 cm"),
@@ -116,17 +116,19 @@ def test_the_first_value_of_a_variable_is_offered_in_place_of_its_declaration() 
         ("SI|R(90, 60)~1A2B", ""),
     ],
 )  # fmt: skip
-def test_a_repair_button_does_what_the_message_says(program: str, wanted_text: str) -> None:
+def test_a_repair_button_does_what_the_message_says(program: str, expected_text: str) -> None:
     """It changes nothing else; the command repairs none of it, as it is uncertain."""
     finding = checking.check(program.encode(), "tinibot", "en").findings[0]
     repair = buttons(program)[0]
-    assert (changed_by(program, repair) if repair else "") == wanted_text
-    if wanted_text:
-        assert finding.message not in check(wanted_text)
-        assert not [message for message in check(wanted_text) if message.severity == "mistake"]
+    assert (changed_by(program, repair) if repair else "") == expected_text
+    if expected_text:
+        assert finding.message not in check(expected_text)
+        assert not [message for message in check(expected_text) if message.severity == "mistake"]
     kit = robots.load("tinibot").kit
     repaired = repair_program(program, lambda text: compile_text(text, kit).diagnostics)
-    assert wanted_text.startswith("B(") or repaired.text == program  # -2 seconds forward are 2 back
+    assert (
+        expected_text.startswith("B(") or repaired.text == program
+    )  # -2 seconds forward are 2 back
 
 
 def test_each_of_many_mistakes_has_its_own_button() -> None:
@@ -167,8 +169,8 @@ def test_answers_are_json() -> None:
     (finding,) = answer["findings"]
     assert finding["severity"] == "mistake" and finding["code"] == "TS206"
     assert finding["may_repair"]
-    asked_text = json.dumps({"do": "repair", "robot": "tinibot", "which": 0})
-    changes = json.loads(worker.answer(asked_text, "SI|F(-1, 80) // ñ 🤖".encode()))["changes"]
+    request_text = json.dumps({"do": "repair", "robot": "tinibot", "which": 0})
+    changes = json.loads(worker.answer(request_text, "SI|F(-1, 80) // ñ 🤖".encode()))["changes"]
     assert changes[0]["text"] == "B(1, 80)"
     opened_program = json.loads(worker.answer(json.dumps({**request, "do": "open"}), b"\xff"))
     assert opened_program["message"]

@@ -80,7 +80,7 @@ class History:
     def act(self) -> None:
         ways = (self.comes, self.tells, self.tells, self.tells, self.wants, self.wants,
                 self.connects, self.connects, self.ends, self.passes, self.passes, self.removes,
-                self.gives, self.takes_robot, self.next_one, self.brings,
+                self.gives, self.takes_robot, self.calls_next, self.brings,
                 self.hands_out)  # fmt: skip
         self.rng.choice(ways)()
 
@@ -115,13 +115,13 @@ class History:
         page.text = fields.get("text", page.text)
         page.lessons = fields.get("lessons", page.lessons)
         self.opens(page, answer)
-        given_work = answer.get("given")
-        if given_work and self.rng.random() < 0.7:
-            receipt = {"key": given_work["key"], "text": given_work["text"]}
+        returned_work = answer.get("given")
+        if returned_work and self.rng.random() < 0.7:
+            receipt = {"key": returned_work["key"], "text": returned_work["text"]}
             version_before = self.version(page)
             if self.answer(page, "here", took=receipt) is not None:
-                page.text = given_work["text"]
-                page.lessons = sorted({*given_work["lessons"], *page.lessons})
+                page.text = returned_work["text"]
+                page.lessons = sorted({*returned_work["lessons"], *page.lessons})
                 assert (
                     self.version(page) > version_before
                 )  # otherwise the teacher sees the previous program
@@ -231,7 +231,7 @@ class History:
             robot = self.pages[holder].robot
             assert robot is None or robot.has_ended  # the class controls only its own robots
 
-    def next_one(self) -> None:
+    def calls_next(self) -> None:
         page = self.somebody()
         if page is not None:
             self.room.teaches("class_next", pupil=self.room.number(page.name))
@@ -244,13 +244,13 @@ class History:
 
     # -- invariants
 
-    def look(self) -> None:
+    def check_invariants(self) -> None:
         state = self.state()
-        self.all_is_there()
-        self.turns_follow(state)
-        self.crash_loses_nothing(state)
+        self.check_no_work_is_lost()
+        self.check_turns(state)
+        self.check_crash_loses_nothing(state)
 
-    def all_is_there(self) -> None:
+    def check_no_work_is_lost(self) -> None:
         """Return each page's newest program, and those of pupils who left, as many times as they
         were made."""
         texts = {
@@ -265,7 +265,7 @@ class History:
                 work = self.room.teaches("class_text", pupil=number)
                 assert (work["text"], sorted(work["lessons"])) == (page.text, page.lessons)
 
-    def turns_follow(self, state: Json) -> None:
+    def check_turns(self, state: Json) -> None:
         now_s = self.room.now_s
         heard_s = {page.name: page.heard_s for page in self.pages.values()}
         queued_pupils = sorted((row for row in state["pupils"] if row["place"]),
@@ -288,7 +288,7 @@ class History:
 
     had_turn = False
 
-    def crash_loses_nothing(self, state: Json) -> None:
+    def check_crash_loses_nothing(self, state: Json) -> None:
         """Check that a class resumes after a crash with the same pupils, work, robots and
         settings.
         """
@@ -311,9 +311,11 @@ class History:
             for room in (room_after, self.room)
         ]
         assert works[0] == works[1]
-        whom = [sorted((row["name"], numbers(work).get(row["given"], "")) for row in work["kept"])
-                for work in (resumed_class, state)]  # fmt: skip
-        assert whom[0] == whom[1], "what was given is given to nobody"
+        kept_rows = [
+            sorted((row["name"], numbers(work).get(row["given"], "")) for row in work["kept"])
+            for work in (resumed_class, state)
+        ]
+        assert kept_rows[0] == kept_rows[1], "what was given is given to nobody"
         assert resumed_class["handout"] == state["handout"]
         for page in self.gone_pages.values():  # who returns gets it only if it is not open there
             request = {"do": "join", "code": state["code"], "name": page.name, "before": page.token}
@@ -340,7 +342,7 @@ def test_a_class_keeps_its_invariants_after_any_history(part: int) -> None:
         history = History(Random(seed))
         for _ in range(STEPS):
             history.act()
-            history.look()
+            history.check_invariants()
 
 
 def test_a_restarted_class_equals_a_new_one() -> None:

@@ -250,8 +250,8 @@ def test_codes_cannot_be_guessed() -> None:
 def test_a_code_may_be_typed_in_lower_case_with_spaces() -> None:
     room = Room()
     code = room.classroom.code.lower()
-    given_fields = {"do": "join", "code": f" {code[:3]} {code[3:]}", "name": "Ana"}
-    assert room.classroom.answer("", PUPIL_ADDRESS, given_fields)["name"] == "Ana"
+    join_fields = {"do": "join", "code": f" {code[:3]} {code[3:]}", "name": "Ana"}
+    assert room.classroom.answer("", PUPIL_ADDRESS, join_fields)["name"] == "Ana"
     assert room.classroom.most_bytes("") == 1000
     assert room.classroom.most_bytes("0" * 32) == 0
 
@@ -415,9 +415,9 @@ def test_only_the_teacher_returns_work_to_a_name() -> None:
     state = room.teaches("class_give_back", key=key, pupil=number)
     assert state["kept"] == [{**row, "given": number}]
     for _ in range(2):  # an answer may be lost
-        given_work = room.checks_in(eve)["given"]
-        assert given_work == {"key": key, **GIVEN_WORK}
-    assert "given" not in room.checks_in(eve, took=take_change(given_work))
+        returned_work = room.checks_in(eve)["given"]
+        assert returned_work == {"key": key, **GIVEN_WORK}
+    assert "given" not in room.checks_in(eve, took=take_change(returned_work))
     assert room.teaches("class")["kept"] == []
     assert room.teaches("class_give_back", key=key, pupil=number)["kept"] == []  # pressed again
 
@@ -501,8 +501,8 @@ def test_a_crash_between_sending_and_receipt_loses_no_work(class_file: Path) -> 
     states = [room.classroom.state_to_keep()]
     room.teaches("class_give_back", key=key_of(room), pupil=room.number("Ana"))
     states.append(room.classroom.state_to_keep())
-    given_work = room.checks_in(ana)["given"]
-    room.checks_in(ana, took=take_change(given_work))
+    returned_work = room.checks_in(ana)["given"]
+    room.checks_in(ana, took=take_change(returned_work))
     states.append(room.classroom.state_to_keep())
     for k, state in enumerate(states):
         room_after = Room(0)
@@ -511,7 +511,7 @@ def test_a_crash_between_sending_and_receipt_loses_no_work(class_file: Path) -> 
         assert ("given" in room_after.checks_in(ana)) is (k == 1)
         if k == 1:  # under the same key: a page that has it does not take it again
             assert room_after.checks_in(ana)["given"] == {
-                **given_work,
+                **returned_work,
                 "lessons": ("01_first_line",),
             }
 
@@ -527,8 +527,8 @@ def test_the_teacher_chooses_between_pupils_of_the_same_name() -> None:
     # The teacher has looked at it.
     room.teaches("class_give_back", key=key_of(room), pupil=pupils[1]["number"])
     assert "given" not in room.checks_in(eve)
-    given_work = room.checks_in(ana)["given"]
-    room.checks_in(eve, took=take_change(given_work), text="")
+    returned_work = room.checks_in(ana)["given"]
+    room.checks_in(eve, took=take_change(returned_work), text="")
     assert texts_of(room) == ["F(1, 50)"]
 
 
@@ -1079,7 +1079,7 @@ def test_what_was_kept_last_is_read_whatever_was_kept_before(
     seed: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A class may be over, and the next one the same; a disk may be full, and a computer crash."""
-    chance, expected, is_full = Random(seed), None, False
+    rng, expected, is_full = Random(seed), None, False
     replace_file = files.replace
 
     def replace(*fields: Any, **named_fields: Any) -> None:
@@ -1091,12 +1091,12 @@ def test_what_was_kept_last_is_read_whatever_was_kept_before(
     class_keeping.forget()
     keeper = Keeper()
     for _ in range(30):
-        is_full = chance.random() < 0.3
-        state = chance.choice(({"code": "1"}, {"code": "2"}, None))
+        is_full = rng.random() < 0.3
+        state = rng.choice(({"code": "1"}, {"code": "2"}, None))
         keeper.keep(state)
         if state is None or not is_full:
             expected = state
-        if chance.random() < 0.2:
+        if rng.random() < 0.2:
             keeper.close()
             keeper = Keeper()
         found = keeper.read()

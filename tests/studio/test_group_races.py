@@ -102,8 +102,8 @@ class Group:
         self.mates[0].ask("here", wants=True)
         until(lambda: self.mates[0].ask("here")["place"] == 0, "it is their turn")
 
-    def later(self, act: Callable[[], None], most_s: float = LATE_S) -> None:
-        delay_s = self.rng.random() * most_s
+    def act_later(self, act: Callable[[], None], max_delay_s: float = LATE_S) -> None:
+        delay_s = self.rng.random() * max_delay_s
 
         def act_late() -> None:
             time.sleep(delay_s)
@@ -129,15 +129,15 @@ class Group:
         self.drives(driver)
         for mate in self.rng.sample(other_mates, self.rng.randrange(3)):
             act_pressed = partial(self._takes, mate, mate.presses, mate.saw_stops)
-            self.later(act_pressed)
+            self.act_later(act_pressed)
         if self.rng.random() < 0.5:
-            self.later(partial(driver.runs, driver.presses, driver.newest_number))
+            self.act_later(partial(driver.runs, driver.presses, driver.newest_number))
         time.sleep(self.rng.random() * LATE_S)
         stopper = self.rng.choice(self.mates)
         stopper.presses += 1
         for _ in range(self.rng.randrange(1, 4)):
-            self.later(stopper.stops, 0.2)
-        self.meet()
+            self.act_later(stopper.stops, 0.2)
+        self.join_threads()
         until(lambda: not self.robot.moves, "the robot stands", 3)
         end_s = time.monotonic() + WATCH_S
         while time.monotonic() < end_s:
@@ -152,7 +152,7 @@ class Group:
         time.sleep(self.rng.random() * 0.3)
         mate.runs(stops, number)
 
-    def meet(self) -> None:
+    def join_threads(self) -> None:
         for thread in self.late_threads:
             thread.join(HANG_LIMIT_S)
         self.late_threads.clear()

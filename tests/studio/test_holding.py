@@ -58,8 +58,8 @@ def test_steps_go_through_every_part_and_into_defined_words() -> None:
     assert list(steps(COUNTING_PROGRAM, simulation)) == STEPS
     assert not simulation.robot.is_running
     text = "DEF HOP;\n  F(0.1, 80);\nEND_DEF;\nHOP;\nSHOW(1)"
-    wanted_texts = ["DEF HOP;", "HOP", "F(0.1, 80)", "SHOW(1)"]
-    assert list(steps(text, started_simulation(text, is_held=True))) == wanted_texts
+    expected_texts = ["DEF HOP;", "HOP", "F(0.1, 80)", "SHOW(1)"]
+    assert list(steps(text, started_simulation(text, is_held=True))) == expected_texts
 
 
 def test_variables_are_reported_at_a_halt() -> None:
@@ -80,7 +80,7 @@ def test_a_held_program_does_the_same(name: str, robot: str, world: str, mode: s
     result = check((ROOT / "examples" / f"{name}.ts").read_bytes(), robot, "en")
     plain_simulation = Simulation(robot, worlds.load(world), result.image)
     plain_simulation.advance(2500)
-    wanted_events = plain_simulation.robot.take_events()
+    expected_events = plain_simulation.robot.take_events()
     parts = tuple(place.offset for place in result.places)
     marks = Marks(
         parts, (*parts, *range(1000)) if mode == "breakpoints" else (), 0, mode == "steps"
@@ -95,7 +95,7 @@ def test_a_held_program_does_the_same(name: str, robot: str, world: str, mode: s
             held_simulation.advance(plain_simulation.robot.now_ms - held_simulation.robot.now_ms)
         pauses += held_simulation.held_at is not None
     assert pauses > 5
-    assert held_simulation.robot.take_events() == wanted_events
+    assert held_simulation.robot.take_events() == expected_events
     assert held_simulation.robot.pose == plain_simulation.robot.pose
 
 

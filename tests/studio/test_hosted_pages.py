@@ -84,7 +84,7 @@ def test_a_port_has_one_page_and_a_page_one_robot(
 ) -> None:
     """Whoever comes leaves what was there, or is told why not; the same connect is done once. What
     has come late from a connection before reaches nothing. At the end all are left."""
-    chance = Random(seed)
+    rng = Random(seed)
     robots: list[FakeRobot] = []
     now_s = 100.0
 
@@ -101,8 +101,8 @@ def test_a_port_has_one_page_and_a_page_one_robot(
     latched_until_s = 0.0
 
     def connect() -> None:
-        page, port, tab = chance.choice(PAGES), chance.choice(PORTS), chance.choice(TABS)
-        number = chance.randrange(6)
+        page, port, tab = rng.choice(PAGES), rng.choice(PORTS), rng.choice(TABS)
+        number = rng.randrange(6)
         for name, robot in [*robot_by_page.items()]:
             if robot.has_ended and robot.attending.has_left:  # its page is not there any more
                 del robot_by_page[name]
@@ -145,9 +145,9 @@ def test_a_port_has_one_page_and_a_page_one_robot(
             robot_by_page[page] = new
 
     def ask() -> None:
-        page, tab, number = chance.choice(PAGES), chance.choice(TABS), chance.randrange(6)
-        action, stops = chance.choice(("beat", "stop", "leave")), chance.randrange(3)
-        stops = -1 if action == "stop" and chance.random() < 0.2 else stops
+        page, tab, number = rng.choice(PAGES), rng.choice(TABS), rng.randrange(6)
+        action, stops = rng.choice(("beat", "stop", "leave")), rng.randrange(3)
+        stops = -1 if action == "stop" and rng.random() < 0.2 else stops
         robot = robot_by_page.get(page)
         state = None if robot is None else robot.state
         stop_count = 0 if robot is None else len(robot.attending.stops)
@@ -169,21 +169,21 @@ def test_a_port_has_one_page_and_a_page_one_robot(
         assert robot.state == ("parting" if is_left else state)
 
     for _ in range(120):
-        match chance.choice(("connect", "connect", "ask", "ask", "ends", "changes", "stop all")):
+        match rng.choice(("connect", "connect", "ask", "ask", "ends", "changes", "stop all")):
             case "connect":
                 connect()
             case "ask":
                 ask()
             case "ends" if robots:
-                robot = chance.choice(robots)
+                robot = rng.choice(robots)
                 next_states = {"driving": ("parting", "closing"), "parting": ("closing", "over")}
-                robot.state = chance.choice(next_states.get(robot.state, ("over",)))
-                robot.attending.has_left = chance.random() < 0.5
+                robot.state = rng.choice(next_states.get(robot.state, ("over",)))
+                robot.attending.has_left = rng.random() < 0.5
             case "changes" if robots:
-                robot = chance.choice(robots)
+                robot = rng.choice(robots)
                 robot.attending.stop_count += 1
-                robot.attending.is_half_made = chance.random() < 0.3
-                robot.is_holding_port = robot.state == "parting" and chance.random() < 0.3
+                robot.attending.is_half_made = rng.random() < 0.3
+                robot.is_holding_port = robot.state == "parting" and rng.random() < 0.3
             case "stop all":
                 now_s += 1
                 latch_counts = [len(robot.attending.latches) for robot in robots]
@@ -205,7 +205,7 @@ def test_a_port_has_one_page_and_a_page_one_robot(
             driving = [one for one in robots if one.state == "driving" and is_at(one, port)]
             assert len(driving) < 2
     for robot in robots:
-        robot.is_unconfirmed = robot.state != "over" and chance.random() < 0.5
+        robot.is_unconfirmed = robot.state != "over" and rng.random() < 0.5
     open_robots = [robot for robot in robots if robot.state != "over"]
     unconfirmed_ports = hosting.close()
     assert sorted(unconfirmed_ports) == sorted(one.port for one in robots if one.is_unconfirmed)

@@ -102,8 +102,12 @@ def page(hosting: Hosting, robot: PtyRobot) -> Page:
     """A page that has met its robot."""
     made_page = Page(hosting)
     assert made_page.connect(robot.port) == {}
-    about = made_page.until(lambda item: "connected" in item)["connected"]
-    assert (about["robot"], about["owner"], about["is_running"]) == ("tinibot", "free", False)
+    connected_item = made_page.until(lambda item: "connected" in item)["connected"]
+    assert (connected_item["robot"], connected_item["owner"], connected_item["is_running"]) == (
+        "tinibot",
+        "free",
+        False,
+    )
     return made_page
 
 
@@ -246,14 +250,14 @@ def test_a_page_hears_of_its_stop_before_it_hears_that_it_is_over(
         hosted = hosted_robot.HostedRobot("COM5", "tinibot", "en")
         start_s = clock[0]
         hosted._part_from_robot(link)  # type: ignore[arg-type]
-        told = [item["event"] for item in hosted.attending._news]
+        told_events = [item["event"] for item in hosted.attending._news]
         if not link.has_run:
-            assert (told, link.stop_count, hosted.is_unconfirmed) == ([], 0, False)
+            assert (told_events, link.stop_count, hosted.is_unconfirmed) == ([], 0, False)
             continue
         ends = [k for k in range(1, 5) if events[k] in ("STOPPED", "LOST")]
         last = ends[0] if ends else 4
         shown = [event for event in events[1 : last + 1] if event is not None]
-        assert told == [*([] if events[0] is None else [events[0]]), "STOPPING", *shown]
+        assert told_events == [*([] if events[0] is None else [events[0]]), "STOPPING", *shown]
         assert link.stop_count == 1
         assert hosted.is_unconfirmed == (not ends or events[last] == "LOST")
         wait_s = last * poll_s if ends else limit_s
@@ -337,12 +341,12 @@ def test_a_stop_by_another_command_is_reported(page: Page, robot: PtyRobot) -> N
     assert not robot.moves
 
 
-@pytest.mark.parametrize("page_leaves", [True, False], ids=["page", "server"])
+@pytest.mark.parametrize("does_page_leave", [True, False], ids=["page", "server"])
 def test_the_end_of_a_page_and_of_the_server_stops_robots(
-    hosting: Hosting, page: Page, robot: PtyRobot, page_leaves: bool
+    hosting: Hosting, page: Page, robot: PtyRobot, does_page_leave: bool
 ) -> None:
     start_drive(page, robot)
-    if page_leaves:
+    if does_page_leave:
         page.beat(action="leave")
         robot.until(lambda: not robot.moves, "it stands")
     else:

@@ -362,8 +362,8 @@ def test_a_connect_with_a_lost_answer_is_repeated(asker: AskingPage, robot: PtyR
         assert asker.asks("connect", connection=connection) == {}
         assert asker.asks("connect", connection=connection) == {}
         asker.beats_until(lambda item: "connected" in item, "it is met", connection=connection)
-        [met] = [item for item in asker.news if "connected" in item]
-        assert met["held_by"] == ""  # not held by the previous page
+        [connected_item] = [item for item in asker.news if "connected" in item]
+        assert connected_item["held_by"] == ""  # not held by the previous page
 
     connect_twice(2)
     connect_twice(3)

@@ -19,11 +19,11 @@ def test_commas_and_points_are_accepted_as_decimal_and_group_separators(
     rng = random.Random(1)
     rows: list[tuple[str, float]] = []
     for _ in range(2000):
-        decimals = rng.randint(0, 3)
-        number = round(rng.choice([1, 100, 1_000_000]) * rng.uniform(-2, 2), decimals)
-        number_text = f"{number:.{decimals}f}"
-        rows += [(number_text, number), (f" {number:,.{decimals}f}", number)]
-        if decimals in (1, 2) or abs(number) < 1:
+        decimal_count = rng.randint(0, 3)
+        number = round(rng.choice([1, 100, 1_000_000]) * rng.uniform(-2, 2), decimal_count)
+        number_text = f"{number:.{decimal_count}f}"
+        rows += [(number_text, number), (f" {number:,.{decimal_count}f}", number)]
+        if decimal_count in (1, 2) or abs(number) < 1:
             rows.append((number_text.replace(".", ","), number))
     input_lines = "".join(f"{json.dumps(number_text)}\n" for number_text, _ in rows)
     for (number_text, number), row in zip(

@@ -129,9 +129,11 @@ def test_releasing_everything_requires_new_presses(page_data: Path, end: list[An
         ["up", "stick", 1], ["keyup", "b"], ["passes", 500],
         ["gamepads", [[0, 0], []]], ["passes", 100], ["keydown", "b"],
     )  # fmt: skip
-    let_go = packets.index([10, *NO_KEYS])
-    assert [10, A_KEY | 32, 0, 100] in [[10, *held_keys] for _, *held_keys in packets[:let_go]]
-    assert [held_keys for _, *held_keys in packets[let_go + 1 :]] == [[32, 0, 0]]
+    release_index = packets.index([10, *NO_KEYS])
+    assert [10, A_KEY | 32, 0, 100] in [
+        [10, *held_keys] for _, *held_keys in packets[:release_index]
+    ]
+    assert [held_keys for _, *held_keys in packets[release_index + 1 :]] == [[32, 0, 0]]
 
 
 def test_a_key_with_a_missed_release_is_dropped_at_the_next_one(page_data: Path) -> None:

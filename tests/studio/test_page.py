@@ -128,7 +128,7 @@ def test_a_mistake_is_marked_where_it_is_and_its_button_repairs_it(page: Page) -
 
 
 @pytest.mark.parametrize(
-    ("program", "wanted_text"),
+    ("program", "expected_text"),
     [
         ("R(90, 60)", "R(90 DEG, 60)"),
         ("F(1, 800)", "F(1, 100)"),
@@ -136,13 +136,13 @@ def test_a_mistake_is_marked_where_it_is_and_its_button_repairs_it(page: Page) -
          "CONTADOR = 0\ncontador = contador + 1\nF(contador, 50)"),
     ],
 )  # fmt: skip
-def test_a_button_does_what_its_message_says(page: Page, program: str, wanted_text: str) -> None:
+def test_a_button_does_what_its_message_says(page: Page, program: str, expected_text: str) -> None:
     """Undo reverts it."""
     write(page, program)
     page.locator("#messages .repair").click()
     page.locator("#messages .repair").wait_for(state="detached")
     wait_until_checked(page)
-    assert image(page) == compile(wanted_text).image
+    assert image(page) == compile(expected_text).image
     page.click("#undo")
     page.locator("#messages .repair").wait_for()
 
@@ -279,9 +279,9 @@ def test_a_hostile_program_is_shown_as_text(page: Page, tmp_path: Path) -> None:
     wait_until_checked(page)
     assert page.title() == "TiniScript Studio"
     assert page.locator("img, main script").count() == 0
-    wanted_messages = check(HOSTILE)
-    assert len(wanted_messages) >= 1
-    assert wanted_messages[0].message in page.inner_text("#messages")
+    expected_messages = check(HOSTILE)
+    assert len(expected_messages) >= 1
+    assert expected_messages[0].message in page.inner_text("#messages")
 
 
 def test_the_address_injects_nothing_into_the_page(page: Page, address: str) -> None:

@@ -127,7 +127,7 @@ class TriedAction(NamedTuple):
     action: str
     fault: str
     silence_s: float
-    took_s: float
+    duration_s: float
     errors: tuple[str, ...]
     messages: tuple[str, ...]
 
@@ -179,10 +179,10 @@ class Scene:
         end_times_ms = [
             time_ms for time_ms, text in timed_messages if re.search(END_PATTERNS[action], text)
         ]
-        took_s = (
+        duration_s = (
             (end_times_ms[0] if end_times_ms else start_ms + 1000 * LONGEST_END_S) - start_ms
         ) / 1000
-        return TriedAction(action, fault.name, gaps[0] if gaps else LONGEST_END_S, took_s,
+        return TriedAction(action, fault.name, gaps[0] if gaps else LONGEST_END_S, duration_s,
                            tuple(errors), tuple(texts))  # fmt: skip
 
     def _prepare(self, action: str, fault: Fault | LineFaults) -> None:
@@ -380,9 +380,9 @@ def print_table(tried_actions: Sequence[TriedAction]) -> None:
     print("| page | tries | longest silence, s | to its end, s |\n|---|---:|---:|---:|")
     for action, page_actions in rows.items():
         quietest = max(page_actions, key=lambda tried_action: tried_action.silence_s)
-        slowest = max(page_actions, key=lambda tried_action: tried_action.took_s)
+        slowest = max(page_actions, key=lambda tried_action: tried_action.duration_s)
         print(f"| {action} | {len(page_actions)} | {quietest.silence_s:.1f} ({quietest.fault}) |"
-              f" {slowest.took_s:.1f} ({slowest.fault}) |")  # fmt: skip
+              f" {slowest.duration_s:.1f} ({slowest.fault}) |")  # fmt: skip
 
 
 def test_a_sample_of_button_presses_keeps_the_laws(

@@ -103,8 +103,8 @@ def test_blocks_of_the_page_match_python(pages: Pages, part: int) -> None:
         oracle_kit, kit = KITS[seed % len(KITS)]
         forms.append(read_blocks(oracle_programs.program(random.Random(seed), oracle_kit), kit))
     data = json.loads(json.dumps([without_places(data_of(form)) for form in forms]))
-    for k, (wanted_form, actual) in enumerate(zip(data, round_trip(page, data), strict=True)):
-        assert actual == wanted_form, k
+    for k, (expected_form, actual) in enumerate(zip(data, round_trip(page, data), strict=True)):
+        assert actual == expected_form, k
     assert compare(page, SAMPLE_SIZE, seed=1000) > SAMPLE_SIZE * 0.9
 
 
@@ -839,7 +839,7 @@ def test_a_lesson_about_tasks_can_be_solved_with_blocks(pages: Pages, number: in
 @sampled
 def test_an_if_block_can_get_more_branches(page: Page) -> None:
     start(page, "SI|IF(DISTANCE < 10);\n  S;\nENDIF;\n")
-    for name, wanted_text in (
+    for name, expected_text in (
         ("Add a case", "IF(DISTANCE < 10);\n  S;\nELSE;\nENDIF;\n"),
         ("Add a case", "IF(DISTANCE < 10);\n  S;\nELSEIF(TRUE);\nELSE;\nENDIF;\n"),
         ("Remove the last case", "IF(DISTANCE < 10);\n  S;\nELSE;\nENDIF;\n"),
@@ -847,7 +847,7 @@ def test_an_if_block_can_get_more_branches(page: Page) -> None:
         href = "more.svg" if name.startswith("Add") else "less.svg"
         page.locator(f"#blocks .blocklyBlockCanvas image[*|href$='{href}']").first.click()
         page.locator("#blocks[data-state=shown]").wait_for()
-        wait_for_text(page, f"SI|{wanted_text}")
+        wait_for_text(page, f"SI|{expected_text}")
 
 
 @sampled
@@ -915,12 +915,12 @@ def test_all_blockly_texts_are_in_the_catalogue() -> None:
     names = set(re.findall(r"[A-Z][A-Z0-9_]+", core))
     messages = (BLOCKLY / "msg" / "en.js").read_text(encoding="utf-8")
     rows = re.findall(r'^Blockly\.Msg\["(\w+)"\] = ("(?:[^"\\]|\\.)*");$', messages, re.MULTILINE)
-    wanted_texts = {f"blockly/{name}": json.loads(text) for name, text in rows if name in names}
+    expected_texts = {f"blockly/{name}": json.loads(text) for name, text in rows if name in names}
     texts = page_texts("en")
     blockly_texts = {key: texts[key] for key in texts if key.startswith("blockly/")}
     assert blockly_texts == {
-        key: wanted_texts[key]
-        for key in wanted_texts
+        key: expected_texts[key]
+        for key in expected_texts
         if key in blockly_texts or not UNUSED_MESSAGE.search(key)
     }
 

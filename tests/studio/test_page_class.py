@@ -163,7 +163,7 @@ def test_three_pupils_share_a_robot(
     ana: Page, teacher: Page, pages: Pages, shared_class: Class, robot: PtyRobot
 ) -> None:
     luz, teo = (join_class(pages, shared_class, name) for name in ("Luz", "Teo"))
-    big = teacher.locator("#big_pupil")
+    large_picture = teacher.locator("#big_pupil")
     click_ask(ana)
     wait_for_status(ana, "It is your turn. Nobody is waiting.")
     wait_for_link(ana, "Connected: ")
@@ -182,14 +182,14 @@ def test_three_pupils_share_a_robot(
     tile(teacher, "Teo").filter(has_text="place 2").wait_for()
     for name, is_driving in (("Teo", False), ("Ana", True)):  # one without a turn loses none
         tile(teacher, name).locator(".see").click()
-        assert big.locator("h2").inner_text() == name
+        assert large_picture.locator("h2").inner_text() == name
         for action in ("stop", "class_next"):
-            assert big.locator(f"[data-text={action}]").is_visible() is is_driving
+            assert large_picture.locator(f"[data-text={action}]").is_visible() is is_driving
         if name == "Teo":
-            big.locator("[data-text=close]").click()
-    big.locator("pre").filter(has_text=FOREVER.split(";")[0]).wait_for()
-    big.locator("img[src^=blob]").wait_for()
-    big.locator("[data-text=class_stop_all]").click()
+            large_picture.locator("[data-text=close]").click()
+    large_picture.locator("pre").filter(has_text=FOREVER.split(";")[0]).wait_for()
+    large_picture.locator("img[src^=blob]").wait_for()
+    large_picture.locator("[data-text=class_stop_all]").click()
     robot.until(lambda: not robot.moves, "the teacher stops it")
     wait_for_link(ana, "Stopped: the robot has confirmed the stop.")
     stops = teacher.locator("#stops")
@@ -197,13 +197,13 @@ def test_three_pupils_share_a_robot(
     assert not teacher.locator("#stops .wrong").count()
     time.sleep(LATCH_S)
     start_drive(ana, robot)
-    big.locator("[data-text=stop]").click()
+    large_picture.locator("[data-text=stop]").click()
     robot.until(lambda: not robot.moves, "the teacher stops this one")
     time.sleep(LATCH_S)
     start_drive(ana, robot)
-    big.locator("[data-text=class_next]").click()
+    large_picture.locator("[data-text=class_next]").click()
     robot.until(lambda: not robot.moves, "the turn is over")
-    big.locator("[data-text=close]").click()
+    large_picture.locator("[data-text=close]").click()
     wait_for_link(ana, "Your turn is over.")
     wait_for_link(luz, "Connected: ")
     luz.click("#link_leave")
@@ -671,12 +671,12 @@ def test_what_the_teacher_gives_to_all_is_opened_once_by_each_pupil(browser: Bro
     """Nothing is taken from a pupil, and who comes later gets it, too."""
     with studio.serve_class([]) as class_:
         pages = Pages(browser, class_.server.address)
-        hands_out(pages, class_)
+        check_handouts(pages, class_)
         pages.close()
         assert not pages.errors
 
 
-def hands_out(pages: Pages, class_: Class) -> None:
+def check_handouts(pages: Pages, class_: Class) -> None:
     ana = join_class(pages, class_, "Ana")
     write(ana, "F(1, 33)")
     teacher = open_teacher_page(pages, class_)
@@ -795,12 +795,12 @@ def test_the_teacher_plays_a_pupils_newest_run_in_one_click(
 def test_the_end_of_a_class_is_shown(browser: Browser, erases: bool) -> None:
     with studio.serve_class([]) as class_:
         pages = Pages(browser, class_.server.address)
-        ends(pages, class_, erases)
+        check_class_end(pages, class_, erases)
         pages.close()
         assert not pages.errors
 
 
-def ends(pages: Pages, class_: Class, erases: bool) -> None:
+def check_class_end(pages: Pages, class_: Class, erases: bool) -> None:
     ana = join_class(pages, class_, "Ana")
     write(ana, "F(1, 33)")
     ana.click("#my_programs")

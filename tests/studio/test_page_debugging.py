@@ -52,8 +52,8 @@ def test_a_run_halts_at_a_breakpoint_each_time_and_shows_values(page: Page) -> N
         page.click("#pause")
     wait_for_phase(page, "ended")
     assert value(page, "X") == "3"
-    wanted_texts = [f"{event.ms} {event.text}" for event in run(COUNTING_PROGRAM).events]
-    assert (page.locator("#trace").text_content() or "").split("\n") == wanted_texts
+    expected_texts = [f"{event.ms} {event.text}" for event in run(COUNTING_PROGRAM).events]
+    assert (page.locator("#trace").text_content() or "").split("\n") == expected_texts
 
 
 @sampled
@@ -121,8 +121,10 @@ def test_breakpoints_are_shown_and_set_at_blocks(page: Page) -> None:
     page.locator("#blocks .show.breakpoint").wait_for()
     page.click("#run")
     for words in (r"\+", "show", r"\+"):
-        said_element = page.locator("#doing", has_text=re.compile(f"Stopped before “.*{words}.*”"))
-        said_element.wait_for()
+        message_element = page.locator(
+            "#doing", has_text=re.compile(f"Stopped before “.*{words}.*”")
+        )
+        message_element.wait_for()
         page.locator("#blocks .running.breakpoint").wait_for()
         page.click("#pause")
     page.locator("#blocks .show .blocklyText", has_text="SHOW").click()

@@ -58,7 +58,7 @@ PROGRAMS = {
 
 @pytest.fixture(autouse=True)
 def at_rest(page: Page, robot: PtyRobot) -> Iterator[None]:
-    robot.ask(lambda robot: robot.sense(0, 0, 42_000))
+    robot.ask(lambda robot: robot.set_readings(0, 0, 42_000))
     page.click("#view_text")
     yield
     page.click("#stop")
@@ -92,15 +92,15 @@ def list_halts(
     """
     variables = len(check(text.encode(), "tinibot", "en").variables)
     for _ in range(UPLOADS):
-        halts = []
+        wait_for_halt = []
         page.click(start_selector)
         page.locator("html[data-halt=read]").wait_for(state="attached")
         while is_halted(page):
-            halts.append(state_of(page, variables))
+            wait_for_halt.append(state_of(page, variables))
             page.click(button)
         wait_for_message(page, re.compile(r"Done\.|[Ss]topped"))
         if "Done." in page.locator("#link_said").inner_text():
-            return halts
+            return wait_for_halt
     raise AssertionError(f"stopped {UPLOADS} times")
 
 
@@ -108,20 +108,20 @@ def virtual_states(text: str, lines: tuple[int, ...], steps: bool) -> list[tuple
     """Return the state of the virtual robot in the same form."""
     program = check(text.encode(), "tinibot", "en")
     rows = text.split("\n")
-    wanted_places = [
+    expected_places = [
         next(place for place in program.places if place.line == line) for line in lines
     ]
-    wanted_spans = {place[1:3] for place in wanted_places}
-    break_offsets = tuple(place.offset for place in program.places if place[1:3] in wanted_spans)
+    expected_spans = {place[1:3] for place in expected_places}
+    break_offsets = tuple(place.offset for place in program.places if place[1:3] in expected_spans)
     parts = tuple(place.offset for place in program.places)
     marks = Marks(parts, break_offsets, len(program.variables), is_held=steps)
-    it = Simulation("tinibot", worlds.load("obstacles"), program.image, marks)
-    halts = []
-    while it.robot.is_running:
-        if it.held_at is None:
-            it.advance(1)
+    simulation = Simulation("tinibot", worlds.load("obstacles"), program.image, marks)
+    wait_for_halt = []
+    while simulation.robot.is_running:
+        if simulation.held_at is None:
+            simulation.advance(1)
             continue
-        state = it.state()
+        state = simulation.state()
         place = max(place for place in program.places if place.offset <= state["at"])
         is_block = place.end_line > place.line
         line = rows[place.line - 1]
@@ -130,13 +130,13 @@ def virtual_states(text: str, lines: tuple[int, ...], steps: bool) -> list[tuple
             ("TRUE" if value else "FALSE") if variable.is_yes_no else f"{value:g}"
             for variable, value in zip(program.variables, state["variables"], strict=True)
         ]
-        halts.append((part, values))
+        wait_for_halt.append((part, values))
         if steps:
-            it.step(60_000)
+            simulation.step(60_000)
         else:
-            it.go_on()
-            it.advance(1)
-    return halts
+            simulation.go_on()
+            simulation.advance(1)
+    return wait_for_halt
 
 
 @pytest.mark.sampled("name")
@@ -158,7 +158,7 @@ def test_a_step_goes_to_the_next_part_of_the_program(page: Page, name: str) -> N
     assert list_halts(page, "#link_step", "#link_step", text) == expected
 
 
-def halts(page: Page, line: int) -> None:
+def wait_for_halt(page: Page, line: int) -> None:
     wait_for_message(page, f"Stopped before line {line}.")
     page.locator("html[data-halt=read]").wait_for(state="attached")
 
@@ -170,7 +170,7 @@ def test_a_halt_reports_where_the_other_tasks_are(page: Page) -> None:
         page, tasks + "TASK;\nW(0.05);\nB(1, 60);\nEND_TASK;\nW(0.1);\nN = 3;\nS", (13,)
     )
     page.click("#link_upload")
-    halts(page, 13)
+    wait_for_halt(page, 13)
     assert page.locator("#link_values div").all_inner_texts() == [
         "N\n3",
         "task on line 2\nwaiting",
@@ -211,13 +211,13 @@ def test_a_breakpoint_is_set_and_removed_while_the_robot_runs(page: Page, robot:
     page.click("#link_upload")
     robot.until(lambda: robot.moves, "it drives")
     press_margin(page, 4)
-    halts(page, 4)
+    wait_for_halt(page, 4)
     page.locator(".cm-content").focus()
     page.keyboard.press("Control+Home")
     page.keyboard.insert_text("W(0);\n")
     wait_until_checked(page)
     page.click("#link_go_on")
-    halts(page, 4)  # line of its own text
+    wait_for_halt(page, 4)  # line of its own text
     press_margin(page, 5)
     page.click("#link_go_on")
     robot.until(lambda: robot.moves, "it drives")
@@ -229,14 +229,14 @@ def test_a_breakpoint_is_set_and_removed_while_the_robot_runs(page: Page, robot:
     page.click("#link_send")
     wait_for_message(page, "The robot has the program")
     page.click("#link_start")
-    halts(page, 5)
+    wait_for_halt(page, 5)
 
 
 @sampled
 def test_a_line_run_in_between_removes_no_breakpoint(page: Page) -> None:
     write_with_breakpoints(page, "W(0.1);\nSHOW(1);\nSHOW(2)", (3,))
     page.click("#link_upload")
-    halts(page, 3)
+    wait_for_halt(page, 3)
     page.click("#link_go_on")
     wait_for_message(page, "Done.")
     page.fill("#link_line", "SHOW(6 * 7)")
@@ -244,7 +244,7 @@ def test_a_line_run_in_between_removes_no_breakpoint(page: Page) -> None:
     page.locator("#link_shown").filter(has_text="42").wait_for()
     wait_for_message(page, "Done.")
     page.click("#link_start")
-    halts(page, 3)
+    wait_for_halt(page, 3)
 
 
 @sampled
@@ -254,7 +254,7 @@ def test_a_robot_gets_the_first_four_breakpoints(page: Page) -> None:
     note = page.locator("#link_breakpoints")
     assert "at the first 4" in note.inner_text()
     for line in (1, 2, 3, 4):
-        halts(page, line)
+        wait_for_halt(page, line)
         page.click("#link_go_on")
     wait_for_message(page, "Done.")
     press_margin(page, 1)
@@ -355,7 +355,7 @@ def test_a_halted_program_ends_like_a_running_one(
 ) -> None:
     write_with_breakpoints(page, LOOP_PROGRAM, (4,))
     page.click("#link_upload")
-    halts(page, 4)
+    wait_for_halt(page, 4)
     if end_kind == "stop":
         page.click("#stop")
     elif end_kind == "Escape":
@@ -402,7 +402,7 @@ def test_a_program_stopped_during_upload_never_starts(
 def test_a_recording_does_not_include_the_time_of_halts(page: Page) -> None:
     write_with_breakpoints(page, "SHOW(1);\nW(0.3);\nSHOW(2);\nW(0.3);\nSHOW(3)", (3,))
     page.click("#link_upload")
-    halts(page, 3)
+    wait_for_halt(page, 3)
     page.wait_for_timeout(2500)
     page.click("#link_go_on")
     wait_for_message(page, "Done.")

@@ -69,8 +69,8 @@ def test_a_lesson_is_solved_by_its_answer(page: Page, number: int) -> None:
     assert check_answer(page, right_answers[0].program) == ("passed", [])
     lesson = catalogue.load(FOLDERS[number - 1])
     worlds = f", in {lesson.world_count} worlds" if lesson.world_count > 1 else ""
-    wanted_text = f"Done! You solved lesson {number}{worlds}."
-    assert page.inner_text("#lesson_said").startswith(f"{wanted_text} You have ")
+    expected_text = f"Done! You solved lesson {number}{worlds}."
+    assert page.inner_text("#lesson_said").startswith(f"{expected_text} You have ")
     assert page.inner_text("#lesson_stars") == "★" * lesson.world_count
 
 

@@ -367,7 +367,7 @@ def test_a_program_of_the_button_is_recorded_from_its_first_event(
         robot.push()
         wait_for_message(page, "Done.")
 
-    agrees(page, run)
+    record_until_same(page, run)
     assert events(page) == ["SHOW 5", "SHOW 6", "DONE"]
 
 
@@ -379,7 +379,7 @@ def test_a_recording_contains_the_programs_readings(page: Page) -> None:
         upload_until_it_runs(page)
         wait_for_message(page, "Done.")
 
-    agrees(page, run)
+    record_until_same(page, run)
     recorded = events(page)
     assert sorted(recorded)[:2] == ["DONE", "READ LIGHT_L 0"] and "READ LIGHT_R 0" in recorded
     assert page.locator("#record_lacks").is_hidden()
@@ -402,7 +402,7 @@ def test_missing_reading_reports_are_noted_if_the_program_reads_sensors(
     assert note.inner_text().startswith("This robot does not report what its program reads")
 
 
-def agrees(page: Page, run: Callable[[], None]) -> None:
+def record_until_same(page: Page, run: Callable[[], None]) -> None:
     """Record runs until one agrees with the virtual robot: a busy computer hears of some late."""
     doing = page.locator("#doing")
     for _ in range(RUN_COUNT):
@@ -423,7 +423,7 @@ def test_a_run_is_recorded_and_replayed_beside_the_virtual_robot(page: Page) -> 
         page.click("#link_upload")
         wait_for_message(page, "Done.")
 
-    agrees(page, run)
+    record_until_same(page, run)
     assert events(page)[-2:] == ["SHOW 5", "DONE"]
     write(page, "SHOW(6)")
     page.click("#record_play")  # the recording has its own program

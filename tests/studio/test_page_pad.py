@@ -210,7 +210,7 @@ def test_a_judged_run_accepts_no_other_keys(pages: Pages) -> None:
 
 def press_until_driven(
     page: Page, robot: PtyRobot, press: Callable[[], None], let_go: Callable[[], None],
-    least_ms: int = 0,
+    min_ms: int = 0,
 ) -> None:  # fmt: skip
     """Press until the robot has driven for so long, of its own time.
 
@@ -222,7 +222,7 @@ def press_until_driven(
         press()
 
         def is_over(start_ms: int = robot.robot_ms) -> bool:
-            has_driven = robot.moves and robot.robot_ms >= start_ms + least_ms
+            has_driven = robot.moves and robot.robot_ms >= start_ms + min_ms
             return has_driven or "Stopped: " in word.inner_text()
 
         wait_for(page, is_over, "it drives or is stopped")
@@ -256,7 +256,7 @@ def test_a_real_robot_is_driven_and_stops_when_the_page_is_hidden(pages: Pages) 
         def release_key() -> None:
             page.keyboard.up("ArrowUp")
 
-        press_until_driven(page, robot, touch, lift, least_ms=2000)
+        press_until_driven(page, robot, touch, lift, min_ms=2000)
         lift()
         wait_for(page, lambda: not robot.moves, "it stands")
         press_until_driven(page, robot, press, release_key)

@@ -51,7 +51,7 @@ TEXT = "// ñandú 🤖 </script>\nSI|LOOP(2);\n  F(1, 80);\nEND_LOOP\n"
 def test_a_link_opens_the_program_without_running_it(pages: Pages, page: Page) -> None:
     page.select_option("#robot", "grabber")
     write(page, TEXT)
-    wanted_bytes = image(page)
+    expected_bytes = image(page)
     link = share(page)
     assert link.startswith(pages.address + "#program=")
     assert "works only on this computer. To share with others" in page.inner_text("#shared_told")
@@ -62,7 +62,7 @@ def test_a_link_opens_the_program_without_running_it(pages: Pages, page: Page) -
     wait_for_note(page, "This program came from a link.")
     wait_until_checked(page)
     assert content(page).rstrip() == TEXT.rstrip()
-    assert (page.input_value("#robot"), image(page)) == ("grabber", wanted_bytes)
+    assert (page.input_value("#robot"), image(page)) == ("grabber", expected_bytes)
     assert page.evaluate("document.documentElement.dataset.phase") == "off"
     assert page.evaluate("location.hash") == "#editor"
     page.click("#my_programs")
@@ -71,10 +71,10 @@ def test_a_link_opens_the_program_without_running_it(pages: Pages, page: Page) -
     visitor = pages.visit(link)  # in a new tab
     wait_for_note(visitor, "This program came from a link.")
     wait_until_checked(visitor)
-    assert image(visitor) == wanted_bytes
+    assert image(visitor) == expected_bytes
     visitor.reload()  # the program is kept from here on
     wait_until_checked(visitor)
-    assert image(visitor) == wanted_bytes
+    assert image(visitor) == expected_bytes
 
 
 ADDRESSES_BY_REACH = {
@@ -137,9 +137,9 @@ def test_a_link_states_where_it_can_be_opened() -> None:
          f"{code}.forEach((each) => console.log(reachOf(each)));"],
         cwd=MODULES.parent, capture_output=True, text=True, check=True,
     )  # fmt: skip
-    wanted_texts = [name for name, row in ADDRESSES_BY_REACH.items() for _ in row.split()]
+    expected_texts = [name for name, row in ADDRESSES_BY_REACH.items() for _ in row.split()]
     assert dict(zip(addresses, completed.stdout.split(), strict=True)) == dict(
-        zip(addresses, wanted_texts, strict=True)
+        zip(addresses, expected_texts, strict=True)
     )
 
 

@@ -72,17 +72,19 @@ def test_a_run_on_the_page_equals_one_without(
 
 
 def test_the_trace_list_matches_the_command(page: Page) -> None:
-    wanted_texts = dances_like_the_command(page)
+    expected_texts = dances_like_the_command(page)
     assert page.inner_text("#doing") == "It has ended."
     page.click("#seen_trace")
     with page.expect_download() as download_info:
         page.click("#save_trace")
-    assert download_info.value.path().read_text().splitlines() == wanted_texts
+    assert download_info.value.path().read_text().splitlines() == expected_texts
     page.click("#seen_arena")
 
 
-@each_row("how, is_paused", product(("button", "Escape", "Escape in the editor"), (False, True)))
-def test_stop_stops_the_run(page: Page, how: str, is_paused: bool) -> None:
+@each_row(
+    "stop_way, is_paused", product(("button", "Escape", "Escape in the editor"), (False, True))
+)
+def test_stop_stops_the_run(page: Page, stop_way: str, is_paused: bool) -> None:
     write(page, FOREVER)
     page.click("#run")
     wait_for_running(page)
@@ -90,10 +92,10 @@ def test_stop_stops_the_run(page: Page, how: str, is_paused: bool) -> None:
         page.dblclick("#pause")
         wait_for_phase(page, "paused")
     assert value(page, "Motors").split() != ["0", "%", "0", "%"]
-    if how == "button":
+    if stop_way == "button":
         page.click("#stop")
     else:
-        if how != "Escape":
+        if stop_way != "Escape":
             page.locator(".cm-content").focus()
         page.keyboard.press("Escape")
     page.locator("#doing").filter(has_text="Stopped.").wait_for()

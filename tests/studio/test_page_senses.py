@@ -41,8 +41,8 @@ class MeteredRobot(PtyRobot):
         self._receiver = Receiver()
         super().__init__(robots.load(name).kit, bytes_per_ms=1)  # 9600 baud
 
-    def pass_ms(self, milliseconds: int, data: bytes = b"") -> bytes:
-        sent_bytes = super().pass_ms(milliseconds, data)
+    def advance_ms(self, milliseconds: int, data: bytes = b"") -> bytes:
+        sent_bytes = super().advance_ms(milliseconds, data)
         for byte in sent_bytes:
             self._receiver.put(byte, self.robot_ms)
             packet = self._receiver.take()
@@ -85,16 +85,16 @@ def wait_for_action(page: Page, action: str) -> None:
     page.locator(f"#link_doing[data-does={action}]").wait_for()
 
 
-def senses(page: Page, robot: PtyRobot, *values: int) -> None:
+def set_and_await_readings(page: Page, robot: PtyRobot, *values: int) -> None:
     """Set the sensors, and wait until the gauges show the values."""
-    robot.ask(lambda robot: robot.sense(*(1000 * value for value in values)))
+    robot.ask(lambda robot: robot.set_readings(*(1000 * value for value in values)))
     for row, value in enumerate(values):
         gauge = page.locator(f"#gauges > div:nth-child({row + 1}) > dd")
         gauge.filter(has_text=re.compile(rf"^{value}\b")).wait_for()
 
 
-def sense(distance: int, robot: HostFirmware) -> None:
-    robot.sense(3000, 4000, 1000 * distance)
+def set_distance(distance: int, robot: HostFirmware) -> None:
+    robot.set_readings(3000, 4000, 1000 * distance)
 
 
 def watch_senses(page: Page) -> None:
@@ -125,7 +125,7 @@ def test_gauges_show_sensor_values_without_announcing_them(page: Page, robot: Pt
     runs = seen_runs(page)
     watch_senses(page)
     for values in SENSED_READINGS:
-        senses(page, robot, *values)
+        set_and_await_readings(page, robot, *values)
     assert not [line for line in robot.actions[count_before:] if line.startswith(("BEEP", "SET"))]
     assert not robot.moves
     assert page.locator("#link_shown").inner_text() == ""
@@ -138,12 +138,12 @@ def test_gauges_show_sensor_values_without_announcing_them(page: Page, robot: Pt
 def test_during_a_run_gauges_show_the_programs_readings(page: Page, robot: PtyRobot) -> None:
     """Other sensors are not shown."""
     watch_senses(page)
-    senses(page, robot, 3, 4, 5)
+    set_and_await_readings(page, robot, 3, 4, 5)
     write(page, "LOOP(FOREVER);X = DISTANCE;W(0.1);END_LOOP")
     upload_until_it_runs(page)
     wait_for_action(page, "own")
     for distance in (12, 345):
-        robot.ask(partial(sense, distance))
+        robot.ask(partial(set_distance, distance))
         page.locator("#gauges dd").last.filter(has_text=re.compile(rf"^{distance}\b")).wait_for()
     assert page.locator("#senses:not(.past)").count() == 1
     assert page.locator("#gauges dd").first.inner_text() == ""
@@ -157,7 +157,7 @@ def test_a_program_takes_precedence_over_the_gauges(page: Page, robot: PtyRobot)
     wait_for_message(page, "Done.")
     assert page.locator("#link_shown").inner_text().split() == ["5", "6"]
     wait_for_action(page, "senses")
-    senses(page, robot, 3, 4, 5)
+    set_and_await_readings(page, robot, 3, 4, 5)
     write(page, FOREVER_SHOW)
     upload_until_it_runs(page)
     wait_for_action(page, "own")
@@ -218,7 +218,7 @@ def test_a_stop_also_stops_the_gauges_until_requested(page: Page, robot: PtyRobo
         page.wait_for_timeout(1500)  # no run may start by itself in this time
         wait_for_action(page, "stopped")
     watch_senses(page)
-    senses(page, robot, 9, 8, 7)
+    set_and_await_readings(page, robot, 9, 8, 7)
 
 
 @sampled
@@ -227,7 +227,7 @@ def test_requested_gauges_return_automatically(page: Page, robot: PtyRobot) -> N
     page.click("#link_leave")
     page.locator("html:not([data-robot=connected])").wait_for(state="attached")
     connect(page, robot)
-    senses(page, robot, 6, 5, 4)
+    set_and_await_readings(page, robot, 6, 5, 4)
     for ask, word in (("#link_identify", "blinks and plays its tune"), ("#side_virtual", "")):
         page.click(ask)
         if word:

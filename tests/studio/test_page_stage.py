@@ -92,9 +92,9 @@ def test_the_robot_view_takes_a_third_of_the_page(page: Page, world: str) -> Non
     wait_for(page, lambda: page.evaluate(AREA_SCRIPT) == small_area, "as before")
 
 
-def wait_for_large_run(page: Page, least_area: float = 0) -> None:
+def wait_for_large_run(page: Page, min_area: float = 0) -> None:
     wait_for_phase(page, "running")
-    wait_for(page, lambda: page.evaluate(AREA_SCRIPT) >= least_area, "a large part of the page")
+    wait_for(page, lambda: page.evaluate(AREA_SCRIPT) >= min_area, "a large part of the page")
     wait_for(
         page,
         lambda: page.evaluate(ROBOT_LENGTH_SCRIPT) >= 65,

@@ -170,9 +170,11 @@ def test_why_explains_the_condition_and_its_readings(page: Page) -> None:
     page.click("#why")
     page.focus("#time_at")
     read_names = set()
-    asked_text = r"Line 3 checked DISTANCE > 3\. DISTANCE was ([\d.]+)\. The answer was yes\."
+    explanation_pattern = (
+        r"Line 3 checked DISTANCE > 3\. DISTANCE was ([\d.]+)\. The answer was yes\."
+    )
     for _ in range(5):
-        if match := re.search(asked_text, status_text(page)):
+        if match := re.search(explanation_pattern, status_text(page)):
             assert status_text(page).endswith("The task on line 1 was using the motors."), (
                 status_text(page)
             )

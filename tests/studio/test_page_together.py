@@ -10,9 +10,9 @@ import pytest
 
 from tests.support.class_pages import (
     class_of_many,
-    enters,
     go_to_line,
     join_class,
+    join_group,
     lines,
     open_teacher_page,
     type_slowly,
@@ -71,7 +71,7 @@ def page_pair(pages: Pages, shared_class: Class) -> tuple[Page, Page]:
     write(ana, PROGRAM)
     luz = join_class(pages, shared_class, "Luz")
     for page in (ana, luz):
-        enters(page)
+        join_group(page)
     return ana, luz
 
 

@@ -17,9 +17,9 @@ import pytest
 from tests.support import studio
 from tests.support.class_pages import (
     class_of_many,
-    enters,
     go_to_line,
     join_class,
+    join_group,
     lines,
     type_slowly,
     wait_for_lines,
@@ -70,7 +70,7 @@ def group_of(pages: Pages, class_: Class) -> tuple[Page, Page]:
     write(ana, PROGRAM)
     luz = join_class(pages, class_, "Luz")
     for page in (ana, luz):
-        enters(page)
+        join_group(page)
     ana.set_viewport_size({"width": 1366, "height": 768})
     ana.click("#view_blocks")
     return ana, luz
@@ -80,7 +80,7 @@ def others_of(pages: Pages, class_: Class) -> tuple[Page, Page]:
     """Two more of the group: Teo has blocks, Eva the text. It is full."""
     teo, eva = (join_class(pages, class_, name) for name in ("Teo", "Eva"))
     for page in (teo, eva):
-        enters(page)
+        join_group(page)
     teo.set_viewport_size({"width": 1366, "height": 768})
     teo.click("#view_blocks")
     wait_for_blocks(teo)
@@ -104,7 +104,7 @@ def text_of(page: Page) -> str:
     return str(text)
 
 
-def field(page: Page, words: str, field_index: int = 0) -> None:
+def open_field(page: Page, words: str, field_index: int = 0) -> None:
     """Open a field of a block, with nothing in it."""
     page.locator("html").evaluate("() => getSelection().removeAllRanges()")
     block(page, words).locator(".blocklyNumberField").nth(field_index).click()
@@ -112,7 +112,7 @@ def field(page: Page, words: str, field_index: int = 0) -> None:
     page.keyboard.press("Control+a")
 
 
-def ends(two: tuple[Page, Page], *rows: str) -> None:
+def check_both_have(two: tuple[Page, Page], *rows: str) -> None:
     """Both have these lines, as text, and compiled; blocks are those of the text."""
     ana, luz = two
     luz.locator(".cm-content").evaluate("(it) => it.blur()")
@@ -139,15 +139,15 @@ def change_rows(*pairs: tuple[str, str]) -> list[str]:
 
 def test_a_changed_field_changes_only_its_line(page_pair: tuple[Page, Page]) -> None:
     ana, _ = page_pair
-    field(ana, "back")
+    open_field(ana, "back")
     type_slowly(ana, "7\n")
-    ends(page_pair, *change_rows(("B(1, 40);", "B(7, 40);")))
+    check_both_have(page_pair, *change_rows(("B(1, 40);", "B(7, 40);")))
 
 
 @sampled
 def test_a_half_typed_field_is_not_a_change_and_stays_open(page_pair: tuple[Page, Page]) -> None:
     ana, luz = page_pair
-    field(ana, "back")
+    open_field(ana, "back")
     type_slowly(ana, "6")
     go_to_line(luz, "S;")
     type_slowly(luz, "\nw(2)\n")
@@ -156,7 +156,7 @@ def test_a_half_typed_field_is_not_a_change_and_stays_open(page_pair: tuple[Page
     type_slowly(ana, "5")  # the field is where it was
     assert "B(1, 40);" in text_of(luz)
     ana.keyboard.press("Enter")
-    ends(page_pair, *change_rows(("B(1, 40);", "B(65, 40);")), "W(2);")
+    check_both_have(page_pair, *change_rows(("B(1, 40);", "B(65, 40);")), "W(2);")
     block(ana, "wait").wait_for()
 
 
@@ -175,18 +175,18 @@ def test_a_block_dragged_during_remote_edits_lands_in_its_place(
     ana.mouse.move(target["x"] + 10, target["y"] + target["height"] + 8, steps=8)
     ana.mouse.up()
     first_row, loop, end_loop, *rest = ROWS[:-1]
-    ends(page_pair, first_row, "S;", loop, end_loop, "BEEP(1, 440);", *rest)
+    check_both_have(page_pair, first_row, "S;", loop, end_loop, "BEEP(1, 440);", *rest)
 
 
 @sampled
 def test_the_later_of_two_changes_of_a_block_wins(page_pair: tuple[Page, Page]) -> None:
     ana, luz = page_pair
-    field(ana, "back")
+    open_field(ana, "back")
     type_slowly(ana, "6")
     change_power(luz, "B(1, 40)")
     until(lambda: "B(1, 95);" in text_of(ana), "the others' value arrives")
     ana.keyboard.press("Enter")
-    ends(page_pair, *change_rows(("B(1, 40);", "B(6, 40);")))
+    check_both_have(page_pair, *change_rows(("B(1, 40);", "B(6, 40);")))
 
 
 @sampled
@@ -215,7 +215,7 @@ def test_loose_blocks_exist_only_on_the_local_page(page_pair: tuple[Page, Page])
 @sampled
 def test_undo_in_blocks_reverts_the_local_change(page_pair: tuple[Page, Page]) -> None:
     ana, luz = page_pair
-    field(ana, "back")
+    open_field(ana, "back")
     type_slowly(ana, "7\n")
     wait_for_lines(luz, *change_rows(("B(1, 40);", "B(7, 40);")))
     go_to_line(luz, "S;")
@@ -224,14 +224,14 @@ def test_undo_in_blocks_reverts_the_local_change(page_pair: tuple[Page, Page]) -
     wait_for_blocks(ana)
     ana.locator("#speed").focus()
     ana.keyboard.press("Control+z")
-    ends(page_pair, *ROWS, "W(2);")
+    check_both_have(page_pair, *ROWS, "W(2);")
     ana.click("#redo")
-    ends(page_pair, *change_rows(("B(1, 40);", "B(7, 40);")), "W(2);")
+    check_both_have(page_pair, *change_rows(("B(1, 40);", "B(7, 40);")), "W(2);")
     change_power(luz, "B(7, 40)")
     until(lambda: "B(7, 95);" in text_of(ana), "the others' value arrives")
     wait_for_blocks(ana)
     ana.click("#undo")  # his block has a new owner
-    ends(page_pair, *change_rows(("B(1, 40);", "B(7, 95);")), "W(2);")
+    check_both_have(page_pair, *change_rows(("B(1, 40);", "B(7, 95);")), "W(2);")
 
 
 @sampled

@@ -49,8 +49,8 @@ def state_of(page: Page) -> BlocksState:
     return text, page.locator(f"{PROGRAM} > .blocklyBlock").evaluate_all(STACKS)
 
 
-def wait_for_state(page: Page, wanted_state: BlocksState) -> None:
-    wait_for(page, lambda: state_of(page) == wanted_state, str(wanted_state))
+def wait_for_state(page: Page, expected_state: BlocksState) -> None:
+    wait_for(page, lambda: state_of(page) == expected_state, str(expected_state))
 
 
 def move(page: Page, words: str, target: tuple[float, float]) -> None:
@@ -62,23 +62,23 @@ def move(page: Page, words: str, target: tuple[float, float]) -> None:
     page.locator("#blocks[data-state=shown]").wait_for()
 
 
-def _move_block(page: Page, dice: random.Random) -> None:
+def _move_block(page: Page, rng: random.Random) -> None:
     """A hat, or a loose stack, to an empty place at the right."""
     words = [word for word in ("same time", "each time", "new word", "wait")
              if block(page, word).count()]  # fmt: skip
     if words:
-        move(page, dice.choice(words), (dice.randint(480, 560), dice.randint(330, 560)))
+        move(page, rng.choice(words), (rng.randint(480, 560), rng.randint(330, 560)))
 
 
-def _add_block(page: Page, dice: random.Random) -> None:
-    drag(page, *dice.choice((("Events", "same time"), ("Events", "each time"), ("Move", "back"))),
+def _add_block(page: Page, rng: random.Random) -> None:
+    drag(page, *rng.choice((("Events", "same time"), ("Events", "each time"), ("Move", "back"))),
          None)  # fmt: skip
 
 
-def _type_text(page: Page, dice: random.Random) -> None:
+def _type_text(page: Page, rng: random.Random) -> None:
     text = text_of(page)
     page.click("#view_text")
-    write(page, text.replace("SI|", f"SI|W({dice.randint(1, 9)});\n"))
+    write(page, text.replace("SI|", f"SI|W({rng.randint(1, 9)});\n"))
     page.click("#view_blocks")
 
 
@@ -94,20 +94,20 @@ ACTIONS: tuple[Callable[[Page, random.Random], None], ...] = (
 @pytest.mark.parametrize("seed", range(12))
 def test_each_undo_restores_the_text_and_every_position(page: Page, seed: int) -> None:
     """Each redo does the same, even if only the text or a place had changed."""
-    dice = random.Random(seed)
+    rng = random.Random(seed)
     page.select_option("#robot", "tinibot32")
-    start(page, dice.choice(PROGRAMS), "usual")
+    start(page, rng.choice(PROGRAMS), "usual")
     past_states = [state_of(page)]
-    for act in (_move_block, *dice.choices(ACTIONS, k=5)):
-        act(page, dice)
+    for act in (_move_block, *rng.choices(ACTIONS, k=5)):
+        act(page, rng)
         if (state := state_of(page)) != past_states[-1]:
             past_states.append(state)
-    for wanted_state in past_states[-2::-1]:
+    for expected_state in past_states[-2::-1]:
         page.click("#undo")
-        wait_for_state(page, wanted_state)
-    for wanted_state in past_states[1:]:
+        wait_for_state(page, expected_state)
+    for expected_state in past_states[1:]:
         page.click("#redo")
-        wait_for_state(page, wanted_state)
+        wait_for_state(page, expected_state)
 
 
 def test_undo_moves_a_hat_block_back(page: Page) -> None:

@@ -50,12 +50,12 @@ COLOUR_TOLERANCE = 20  # tolerance for a color at smooth edges or under a ray
 def count(page: Page, color: str) -> int:
     """Return the number of pixels near a color in the picture."""
     picture = Image.open(BytesIO(page.locator("#arena").screenshot())).convert("RGB")
-    wanted_bytes = bytes.fromhex(color)
+    expected_bytes = bytes.fromhex(color)
     pixels = zip(*(band.tobytes() for band in picture.split()), strict=True)
     return sum(
         all(
             abs(channel - other_value) < COLOUR_TOLERANCE
-            for channel, other_value in zip(pixel, wanted_bytes, strict=True)
+            for channel, other_value in zip(pixel, expected_bytes, strict=True)
         )
         for pixel in pixels
     )
@@ -153,15 +153,15 @@ def test_no_audio_context_is_open_at_rest(pages: Pages) -> None:
     wait_for_blocks(page)
     assert page.evaluate("window.opened.length") == 0
     page.click("#view_text")
-    for closings, program in enumerate(("F(1, 80)", "LOOP(3);BEEP(0.1, 440);W(4);END_LOOP")):
+    for closing_count, program in enumerate(("F(1, 80)", "LOOP(3);BEEP(0.1, 440);W(4);END_LOOP")):
         run(page, program)  # prepares the sound before a picture waits for it
         until(lambda: page.evaluate("window.opened[0].state") == "running", "sound")
         assert page.evaluate("window.opened.length") == 1
-        assert page.evaluate("window.closings") == closings
+        assert page.evaluate("window.closings") == closing_count
         until(lambda: page.evaluate("window.rest !== null"), "rest")
         page.evaluate("window.rest()")
         until(lambda: page.evaluate("window.opened[0].state") == "suspended", "closed")
-        assert page.evaluate("window.closings") == closings + 1
+        assert page.evaluate("window.closings") == closing_count + 1
 
 
 @sampled

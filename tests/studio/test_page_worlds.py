@@ -85,7 +85,7 @@ def test_an_undo_during_a_drag_puts_the_part_back(floor: Page) -> None:
     shipped_world = worlds.load("obstacles")
     floor.click("#world_add_boxes")
     drag(floor, [(140, 60), (170, 80)])
-    wanted_world = save_world(floor)
+    expected_world = save_world(floor)
     for undo in ("key", "button"):
         floor.mouse.move(*screen_position(floor, (155, 70)))
         floor.mouse.down()
@@ -98,7 +98,7 @@ def test_an_undo_during_a_drag_puts_the_part_back(floor: Page) -> None:
             floor.evaluate("document.querySelector('#world_undo').click()")
         floor.mouse.move(*screen_position(floor, (155, 120)), steps=2)
         floor.mouse.up()
-        assert save_world(floor).boxes == wanted_world.boxes
+        assert save_world(floor).boxes == expected_world.boxes
     floor.click("#world_undo")
     assert save_world(floor).boxes == shipped_world.boxes
 
@@ -121,11 +121,11 @@ def test_a_cancelled_stroke_disappears(floor: Page) -> None:
     for stroke_end in ("cancel", "undo"):
         if floor.get_attribute("#world_add_walls", "aria-pressed") == "false":
             floor.click("#world_add_walls")
-        wanted_text = picture(floor)
+        expected_text = picture(floor)
         floor.mouse.move(*screen_position(floor, (60, 30)))
         floor.mouse.down()
         floor.mouse.move(*screen_position(floor, (100, 60)), steps=4)
-        assert picture(floor) != wanted_text
+        assert picture(floor) != expected_text
         if stroke_end == "undo":
             # Touched by a second finger.
             floor.evaluate("document.querySelector('#world_undo').click()")
@@ -133,7 +133,7 @@ def test_a_cancelled_stroke_disappears(floor: Page) -> None:
             floor.locator("#arena").dispatch_event("pointercancel")
         shown_text = picture(floor)
         floor.mouse.up()
-        assert shown_text == wanted_text, stroke_end
+        assert shown_text == expected_text, stroke_end
         assert save_world(floor).walls == ()
 
 
@@ -340,15 +340,15 @@ es = "aula"
 def test_a_file_is_opened_or_refused_with_a_reason(floor: Page) -> None:
     open_world_file(floor, OWN_WORLD)
     wait_for_status(floor, "Opened: own.toml")
-    wanted_world = read(OWN_WORLD.decode(), "own")
+    expected_world = read(OWN_WORLD.decode(), "own")
     world = save_world(floor)
     assert (world.start, world.width_cm, world.labels) == (
-        wanted_world.start,
+        expected_world.start,
         90,
-        wanted_world.labels,
+        expected_world.labels,
     )
     rounded_box = [(round(x, 2), round(y, 2)) for x, y in world.boxes[0]]
-    assert rounded_box == [(round(x, 2), round(y, 2)) for x, y in wanted_world.boxes[0]]
+    assert rounded_box == [(round(x, 2), round(y, 2)) for x, y in expected_world.boxes[0]]
     assert floor.locator("img").count() == 0
     for data, message in (
         (b"\xff", "UTF-8"),

@@ -46,8 +46,11 @@ def test_no_sentence_about_a_line_is_said_without_a_choice(key: str) -> None:
         lines = path.read_text(encoding="utf-8").splitlines()
         for number, line in enumerate(lines):
             if re.search(rf"text\('{key}'|\('{key}',", line):
-                near = "\n".join(lines[max(0, number - 1) : number + 1])
-                assert partner_of(key) in near or "areBlocksNamed.value" in near, (path.name, line)
+                nearby_lines = "\n".join(lines[max(0, number - 1) : number + 1])
+                assert partner_of(key) in nearby_lines or "areBlocksNamed.value" in nearby_lines, (
+                    path.name,
+                    line,
+                )
 
 
 def test_a_place_has_a_name_without_a_line(page_data: Path) -> None:

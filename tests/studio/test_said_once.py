@@ -97,8 +97,8 @@ def found_sentences(language: str) -> Iterator[str]:
 def shown_parts(page_data: Path, language: str, rows: list[dict[str, Any]]) -> list[Parts]:
     """Return the parts of sentences as a page in a language shows them."""
     (page_data / "texts.json").write_text(json.dumps(page_texts(language)), encoding="utf-8")
-    given_text = "\n".join(json.dumps(row) for row in rows)
-    lines = in_node(SCRIPT, str(page_data), input_text=given_text)
+    input_rows = "\n".join(json.dumps(row) for row in rows)
+    lines = in_node(SCRIPT, str(page_data), input_text=input_rows)
     assert len(lines) == len(rows)
     return [[(bool(is_block), text) for is_block, text in json.loads(line)] for line in lines]
 

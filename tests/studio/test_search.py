@@ -39,16 +39,19 @@ def test_a_search_finds_a_block_by_whatever_it_is_called(
 ) -> None:
     texts = tmp_path / "texts.json"
     texts.write_text(json.dumps(page_texts(language)), encoding="utf-8")
-    wanted = [
+    expected = [
         (block, word)
         for block, called in zip(BLOCKS.split("|"), CALLED[language].split("|"), strict=True)
         for word in called.split()
     ]
-    words = "".join(f"{json.dumps(word)}\n" for _, word in wanted)
+    words = "".join(f"{json.dumps(word)}\n" for _, word in expected)
     rows = in_node(SCRIPT, str(page_data), str(texts), input_text=words)
-    for (block, word), row in zip(wanted, rows[: len(wanted)], strict=True):
-        assert any(f"{found} ".startswith(f"{block} ") for found in json.loads(row)), (word, row)
-    own_names = [json.loads(row) for row in rows[len(wanted) :]]
+    for (block, word), row in zip(expected, rows[: len(expected)], strict=True):
+        assert any(f"{match} ".startswith(f"{block} ") for match in json.loads(row)), (
+            word,
+            row,
+        )
+    own_names = [json.loads(row) for row in rows[len(expected) :]]
     assert {"when", "move F", "task"} <= {block for block, _, _ in own_names}
-    for block, name, found in own_names:
-        assert block in found, (name, found)
+    for block, name, match in own_names:
+        assert block in match, (name, match)

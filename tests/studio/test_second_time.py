@@ -361,7 +361,7 @@ class HeldClient:
             event=lambda timeout_s: sleep(timeout_s),
         )
 
-    def meet(self, is_patient: object) -> SimpleNamespace:
+    def meet(self, should_retry: object) -> SimpleNamespace:
         return SimpleNamespace(name="TINI")
 
     def hold_for_others(self, goes_on: Callable[[], bool]) -> None:
@@ -427,10 +427,10 @@ def ask(server: serving.Server) -> Callable[[HTTPConnection, str, int], tuple[in
     def ask_server(
         connection: HTTPConnection, request: str, padding: int
     ) -> tuple[int, bytes, bool]:
-        given_fields = {"Origin": f"http://{serving.HOST}:{server.server_port}"}
-        given_fields["X-Padding"] = " " + "x " * (padding // 2)
+        headers = {"Origin": f"http://{serving.HOST}:{server.server_port}"}
+        headers["X-Padding"] = " " + "x " * (padding // 2)
         if request.startswith("/"):
-            connection.request("GET", request, None, given_fields)
+            connection.request("GET", request, None, headers)
         else:
             body = request.encode()
             shown_token = "" if request == STRANGE_ERROR else token
@@ -438,7 +438,7 @@ def ask(server: serving.Server) -> Callable[[HTTPConnection, str, int], tuple[in
                 "POST",
                 serving.ROBOTS_PATH,
                 body,
-                {**given_fields, serving.TOKEN_HEADER: shown_token},
+                {**headers, serving.TOKEN_HEADER: shown_token},
             )
         response = connection.getresponse()
         data = response.read()
@@ -455,7 +455,7 @@ def test_a_request_is_answered_like_the_first_of_a_connection(
     """The kind and the number of earlier requests there do not matter."""
     rng = Random(seed)
     httpconnection = HTTPConnection(serving.HOST, server.server_port, timeout=HANG_LIMIT_S)
-    most_requests = request_count = 0
+    max_requests = request_count = 0
     for _ in range(40):
         is_odd = rng.random() < 0.06
         request = rng.choice(
@@ -469,9 +469,9 @@ def test_a_request_is_answered_like_the_first_of_a_connection(
         new_connection.close()
         assert ask(httpconnection, request, padding) == expected, (request, padding)
         request_count += 1
-        most_requests = max(most_requests, request_count)
+        max_requests = max(max_requests, request_count)
         if expected[2]:
             httpconnection.close()
             request_count = 0
     httpconnection.close()
-    assert most_requests > 4
+    assert max_requests > 4

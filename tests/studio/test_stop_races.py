@@ -214,7 +214,7 @@ def test_the_outcome_of_a_stop_is_final_once_its_connection_has_ended(seed: int)
 
 
 if __name__ == "__main__":
-    wanted_count = int(sys.argv[1])
-    for start in range(0, wanted_count, 100):
-        race(min(100, wanted_count - start), start)
-        print(f"{min(wanted_count, start + 100)} races, none drives", flush=True)
+    expected_count = int(sys.argv[1])
+    for start in range(0, expected_count, 100):
+        race(min(100, expected_count - start), start)
+        print(f"{min(expected_count, start + 100)} races, none drives", flush=True)

@@ -24,7 +24,7 @@ FIRST_CONDITION, SECOND_CONDITION = [1, "DISTANCE < 10", [DISTANCE]], [3, "N > 3
 def explanations(*cases: tuple[str, str]) -> list[Any]:
     """Return the explanations of programs, each at the first instruction with a text."""
     rows = []
-    for text, wanted_text in cases:
+    for text, expected_text in cases:
         program = check(text.encode(), "tinibot", "en")
         assert program.image, text
         lines = text.split("\n")
@@ -32,14 +32,14 @@ def explanations(*cases: tuple[str, str]) -> list[Any]:
         index = next(
             place[0]
             for place in places
-            if lines[place[1] - 1][place[2] - 1 :].startswith(wanted_text)
+            if lines[place[1] - 1][place[2] - 1 :].startswith(expected_text)
         )
         rows.append({"text": text, "places": places, "at": index, "values": VALUES})
     return [json.loads(row) for row in in_node(SCRIPT, json.dumps(rows))]
 
 
 @pytest.mark.parametrize(
-    ("text", "wanted_text", "values"),
+    ("text", "expected_text", "values"),
     [
         (IF_PROGRAM, "B(1, 10)", [[1, "DISTANCE < 10", [], True]]),  # the sensor was read again
         (IF_PROGRAM, "F(1, 20)", [[*FIRST_CONDITION, False], [*SECOND_CONDITION, True]]),
@@ -60,15 +60,15 @@ def explanations(*cases: tuple[str, str]) -> list[Any]:
     ],
 )  # fmt: skip
 def test_enclosing_conditions_are_explained_with_their_values(
-    text: str, wanted_text: str, values: list[Any]
+    text: str, expected_text: str, values: list[Any]
 ) -> None:
-    assert explanations((f"N = 0;{text}", wanted_text))[0]["told"] == values
+    assert explanations((f"N = 0;{text}", expected_text))[0]["told"] == values
 
 
 def test_any_nesting_is_explained_from_the_outside() -> None:
     for seed in range(12):
         rng = random.Random(seed)
-        text, wanted_texts = "W(0.5)", list[Any]()
+        text, expected_texts = "W(0.5)", list[Any]()
         for depth in range(rng.randint(1, 5)):
             head, end = rng.choice((("IF", "ENDIF"), ("WHILE", "END_WHILE")))
             choice_before = rng.choice(
@@ -82,10 +82,10 @@ def test_any_nesting_is_explained_from_the_outside() -> None:
             is_else = head == "IF" and rng.random() < 0.5
             body = f"S\nELSE\n{text}" if is_else else text
             text = f"{choice_before}{head}(DISTANCE < {depth})\n{body}\n{end}"
-            wanted_texts.insert(0, [f"DISTANCE < {depth}", not is_else])
+            expected_texts.insert(0, [f"DISTANCE < {depth}", not is_else])
         assert [
             [row[1], row[3]] for row in explanations((text, "W(0.5)"))[0]["told"]
-        ] == wanted_texts, text
+        ] == expected_texts, text
 
 
 def expression(rng: random.Random, depth: int, *, is_question: bool) -> str:

@@ -49,16 +49,16 @@ class Table:
             wait_until_saved(self.robot, self.session)
         self.program = power
 
-    def quiet(self) -> None:
+    def fall_silent(self) -> None:
         """The client goes; a person may type."""
         self.robot.wait(4000)
         self.talks = None
 
     def talk(self, milliseconds: int, flags: int = 0) -> None:
-        self.robot.pass_time(self.talks, milliseconds, flags)
+        self.robot.advance_time(self.talks, milliseconds, flags)
 
 
-def empty(table: Table) -> None:
+def hold_no_program(table: Table) -> None:
     assert table.robot.until(table.session, table.session.hello()) == OK
 
 
@@ -76,7 +76,7 @@ def typing_of(text: str, power: int = SAVED_POWER) -> Callable[[Table], None]:
 
     def enter(table: Table) -> None:
         table.upload_program(SAVED_POWER)
-        table.quiet()
+        table.fall_silent()
         type_text(table.robot, text)
         table.program = power
 
@@ -154,7 +154,7 @@ def enter_owned(table: Table) -> None:
     table.talk(1, BUTTON_RELEASED)
     table.talk(1000)
     assert table.session.robot and table.session.robot.values.features & OWNED
-    table.quiet()
+    table.fall_silent()
 
 
 def reset_down(table: Table) -> None:
@@ -166,7 +166,7 @@ def reset_down(table: Table) -> None:
 
 
 STATES: dict[str, Callable[[Table], None]] = {
-    "holds no program": empty,
+    "holds no program": hold_no_program,
     "holds a saved program": save_program,
     "holds a program in memory only": load_into_memory,
     "holds a program that was typed": typing_of(f"SB|F(600, {TYPED_POWER})\n", TYPED_POWER),

@@ -45,7 +45,7 @@ def open_teacher_page(pages: Pages, class_: Class) -> Page:
     return page
 
 
-def enters(page: Page) -> None:
+def join_group(page: Page) -> None:
     page.click("#side_class")
     page.locator("#class_group input").fill("Red")
     page.click("[data-text=group_join]")

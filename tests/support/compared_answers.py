@@ -28,9 +28,9 @@ def without_counts(values: Any, *but: str) -> object:
     ]
 
 
-def first_difference(actual: Sequence[object], wanted_items: Sequence[object]) -> str:
+def first_difference(actual: Sequence[object], expected_items: Sequence[object]) -> str:
     """Return the beginning that both have in common, and how each goes on after it."""
     alike = 0
-    while actual[alike : alike + 1] == wanted_items[alike : alike + 1]:
+    while actual[alike : alike + 1] == expected_items[alike : alike + 1]:
         alike += 1
-    return f"{actual[:alike]}\n{actual[alike:][:4]}\nnot\n{wanted_items[alike:][:4]}"
+    return f"{actual[:alike]}\n{actual[alike:][:4]}\nnot\n{expected_items[alike:][:4]}"

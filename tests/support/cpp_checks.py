@@ -209,8 +209,8 @@ def check_arithmetic(machine: Process, name: str, count: int) -> None:
     code = BY_NAME[name].code
     machine_results = machine.results((code, a, b) for a, b in pairs)
     for (a, b), result in zip(pairs, machine_results, strict=True):
-        wanted_result = python_result(name, a, b)
-        assert wanted_result == result, f"{name} {a} {b}: {wanted_result}, not {result}"
+        expected_result = python_result(name, a, b)
+        assert expected_result == result, f"{name} {a} {b}: {expected_result}, not {result}"
 
 
 # -- tasks --------------------------------------------------------------------------------------
@@ -348,8 +348,8 @@ def check_way_programs(machine: Process, first_seed: int, count: int) -> None:
     count_by_end: Counter[str] = Counter()
     for image, kit, senses in some_way_programs(first_seed, count):
         run = machine.run(image, kit, senses)
-        wanted_run = run_in_python(image, kit, senses)
-        assert machine.agrees(run, wanted_run, senses.max_ms), image.hex(" ")
+        expected_run = run_in_python(image, kit, senses)
+        assert machine.agrees(run, expected_run, senses.max_ms), image.hex(" ")
         count_by_end[run.trace.split()[-1]] += 1
     assert {"DONE", "LIMIT", "NO_POWER"} <= set(count_by_end), count_by_end
 
@@ -394,8 +394,8 @@ def check_images(machine: Process, seed: int, count: int) -> None:
     images = [*random_images(seed, count), b"", b"T", b"TS", b"S", b"TX", *short_headers()]
     machine_refusals = machine.refusals(images)
     for image, reason in zip(images, machine_refusals, strict=True):
-        wanted_refusal = python_refusal(image)
-        assert wanted_refusal == reason, f"{image.hex(' ')}: {wanted_refusal}, not {reason}"
+        expected_refusal = python_refusal(image)
+        assert expected_refusal == reason, f"{image.hex(' ')}: {expected_refusal}, not {reason}"
     headers = {number for name, (number, _) in REFUSALS.items() if name != "OTHER_KIT"}
     assert {*machine_refusals} == {0, *headers}
 
@@ -416,12 +416,12 @@ def check_whole_images(machine: Process, seed: int, count: int) -> None:
     refusals = set()
     for image, kit in images_of_programs(seed, count):
         for robot in (kit, changed_kit(rng, kit)):
-            wanted_refusal = refusal_of(lambda data=image, kit=robot: load_image(data, kit))  # type: ignore[misc]
+            expected_refusal = refusal_of(lambda data=image, kit=robot: load_image(data, kit))  # type: ignore[misc]
             machine_refusal = refusal_of(
                 lambda data=image, kit=robot: machine.run(data, kit, senses)  # type: ignore[misc]
             )
-            assert wanted_refusal == machine_refusal, (
-                f"{image.hex(' ')}: {wanted_refusal!r}, not {machine_refusal!r}"
+            assert expected_refusal == machine_refusal, (
+                f"{image.hex(' ')}: {expected_refusal!r}, not {machine_refusal!r}"
             )
-            refusals.add(wanted_refusal.partition(" ")[2].partition(" ")[0])
+            refusals.add(expected_refusal.partition(" ")[2].partition(" ")[0])
     assert {"", "OTHER_KIT", "NO_SUCH_DEVICE", "OTHER_VERSION", "DAMAGED"} <= refusals, refusals

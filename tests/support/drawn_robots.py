@@ -14,12 +14,12 @@ STANDING_STILL: dict[str, Any] = {"rolled_cm": [0, 0], "isBeeping": False}
 Drawing = list[tuple[str, list[float], str]]
 
 
-def drawings_of(*wanted: tuple[str, dict[str, Any] | None, dict[str, Any]]) -> list[Drawing]:
+def drawings_of(*expected: tuple[str, dict[str, Any] | None, dict[str, Any]]) -> list[Drawing]:
     """Return the drawings of robots, each with its name, its state and other visible parts."""
     robot_by_name = {robot["name"]: robot for robot in description()["robots"]}
     requests = [
         {"robot": robot_by_name[name], "state": state, "seen": robot_state}
-        for name, state, robot_state in wanted
+        for name, state, robot_state in expected
     ]
     drawings: list[Drawing] = json.loads(in_node(DRAW_SCRIPT, input_text=json.dumps(requests))[0])
     return drawings

@@ -28,14 +28,14 @@ def connect_to_broker(
     robot, owner = join_network(keys)
     request = owner.use_broker(settings or broker.settings())
     assert wait_for_outcome(robot, [(None, owner)], request) == "OK"
-    until(robot, lambda: broker_settings_of(robot, owner)[1] == "READY")
+    wait_until(robot, lambda: broker_settings_of(robot, owner)[1] == "READY")
     talk(robot, [], AUTHORITY_MS + 100)
     # Shorter times would fail if the broker got no processor time.
-    until(robot, lambda: broker_settings_of(robot, owner)[1] == "READY")
+    wait_until(robot, lambda: broker_settings_of(robot, owner)[1] == "READY")
     return robot, owner
 
 
-def until(robot: Esp32Robot, is_reached: Callable[[], bool], timeout_ms: int = 60_000) -> None:
+def wait_until(robot: Esp32Robot, is_reached: Callable[[], bool], timeout_ms: int = 60_000) -> None:
     for _ in range(timeout_ms // 20):
         if is_reached():
             return

@@ -153,8 +153,8 @@ class FirmataBoard(Board):
             if byte != 0xF7:
                 self._sysex += bytes([byte])
                 return b""
-            asked_bytes, self._sysex = self._sysex, None
-            return FIRMATA_NAME if asked_bytes == b"\x79" else b""
+            sysex_bytes, self._sysex = self._sysex, None
+            return FIRMATA_NAME if sysex_bytes == b"\x79" else b""
         if byte == 0xF0:
             self._sysex = b""
         return FIRMATA_VERSION if byte == 0xF9 else b""

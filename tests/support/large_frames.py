@@ -43,10 +43,10 @@ class AnsweringRobot:
         self.has_commit = False
         self.now_ms = 0
 
-    def run(self, request: PendingRequest[Any], most_ms: int = 25_000, late_ms: int = 30) -> int:
+    def run(self, request: PendingRequest[Any], limit_ms: int = 25_000, late_ms: int = 30) -> int:
         """Answer the frame that came `late_ms` before; return the status of the request."""
         due: list[tuple[int, Frame]] = []
-        while request.outcome is None and self.now_ms < most_ms:
+        while request.outcome is None and self.now_ms < limit_ms:
             for packet in self.session.poll(self.now_ms).split(b"\0"):
                 frame = decode_frame(packet) if packet else None
                 if frame is not None:

@@ -435,8 +435,8 @@ def packets_of(
 
     A large one holds several large frames.
     """
-    most_bytes, window = (LARGE_PACKET, LARGE_WINDOW) if is_large else (SMALL_PACKET, 1)
-    receiver = Receiver(most_bytes, window)
+    packet_bytes, window = (LARGE_PACKET, LARGE_WINDOW) if is_large else (SMALL_PACKET, 1)
+    receiver = Receiver(packet_bytes, window)
     rows = []
     bytes_left = 0
     for now_ms, byte in stream:
@@ -458,7 +458,7 @@ def packets_of(
             receiver.take()
             bytes_left = 0
     assert all(len(bytes.fromhex(" ".join(re.findall(r"\b[0-9a-f]{2}\b", row.split(" ", 2)[2]))))
-               <= most_bytes for row in rows if row[0] in "ft")  # fmt: skip
+               <= packet_bytes for row in rows if row[0] in "ft")  # fmt: skip
     return [
         *rows,
         f"damaged {receiver.damaged_count % 256}, dropped {receiver.dropped_count % 256}",

@@ -138,9 +138,9 @@ class World:
         """Another session with the same robot."""
         self.session = Session(self.rng.getrandbits(32), 9600, KIT)
 
-    def run(self, request: PendingRequest[Any] | None, most_ms: int = 600_000) -> None:
+    def run(self, request: PendingRequest[Any] | None, limit_ms: int = 600_000) -> None:
         """Let time pass until the request is over."""
-        end_ms = self.now_ms + most_ms
+        end_ms = self.now_ms + limit_ms
         while self.now_ms < end_ms and (request is None or request.outcome is None):
             if self.rng.random() < self.drop_rate:
                 self._out_until = self.now_ms + self.rng.randrange(100, 3000)

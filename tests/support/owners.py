@@ -122,17 +122,17 @@ class OwnedRobot:
 
     def hold(self, session: Session | None, milliseconds: int) -> None:
         """Hold the button down, while a computer talks."""
-        self.pass_time(session, 1, BUTTON_PRESSED)
-        self.pass_time(session, 30)
-        self.pass_time(session, milliseconds - 31, BUTTON_HELD)
-        self.pass_time(session, 1, BUTTON_RELEASED)
+        self.advance_time(session, 1, BUTTON_PRESSED)
+        self.advance_time(session, 30)
+        self.advance_time(session, milliseconds - 31, BUTTON_HELD)
+        self.advance_time(session, 1, BUTTON_RELEASED)
 
-    def pass_time(self, session: Session | None, milliseconds: int, flags: int = 0) -> None:
-        self.robot.pass_time(session, milliseconds, flags)
+    def advance_time(self, session: Session | None, milliseconds: int, flags: int = 0) -> None:
+        self.robot.advance_time(session, milliseconds, flags)
 
     def claim(self, session: Session, kind: int = 0) -> str:
         request = session.claim(kind)
-        self.pass_time(session, 500)
+        self.advance_time(session, 500)
         self.hold(session, 2200)
         return self.outcome(session, request)
 

@@ -32,10 +32,10 @@ def ask(
     headers: Mapping[str, str | None] | None = None,
 ) -> tuple[HTTPResponse, bytes]:  # fmt: skip
     """Ask the server at `host`, a name and its port. A header with the value None is left out."""
-    given_headers = {name: value for name, value in (headers or {}).items() if value is not None}
+    sent_headers = {name: value for name, value in (headers or {}).items() if value is not None}
     connection = HTTPConnection(host, timeout=HANG_LIMIT_S)
     try:
-        connection.request(method, path, body, given_headers)
+        connection.request(method, path, body, sent_headers)
         response = connection.getresponse()
         return response, response.read()
     finally:
@@ -47,11 +47,11 @@ def post(
     headers: Mapping[str, str | None] | None = None,
 ) -> tuple[int, bytes]:  # fmt: skip
     """Post as the page at `host` does, but for some headers; return the status and the answer."""
-    given_fields = {
+    page_headers = {
         "Host": host,
         "Origin": f"http://{host}",
         serving.TOKEN_HEADER: token,
         **(headers or {}),
     }
-    response, data = ask(host, path, "POST", body, given_fields)
+    response, data = ask(host, path, "POST", body, page_headers)
     return response.status, data

@@ -69,8 +69,8 @@ def send_and_leave(registration: Registration, data: bytes, rng: Random) -> None
         socket.create_connection((protocol.HOST, registration.number), 10) as peer,
         suppress(OSError),
     ):
-        split = rng.randrange(len(data) + 1)
-        for piece in (data[:split], data[split:]) if rng.random() < 0.3 else (data,):
+        split_offset = rng.randrange(len(data) + 1)
+        for piece in (data[:split_offset], data[split_offset:]) if rng.random() < 0.3 else (data,):
             peer.sendall(piece)
         if rng.random() < 0.5:
             peer.shutdown(socket.SHUT_WR)
@@ -95,7 +95,7 @@ FEW_FILES_COMMAND = ["sh", "-c", 'ulimit -n 256; exec "$@"', "sh", *TSC]  # file
 
 
 @contextmanager
-def few(*arguments: str) -> Iterator[subprocess.Popen[bytes]]:
+def run_with_few_files(*arguments: str) -> Iterator[subprocess.Popen[bytes]]:
     """A `tsc` that may have few files open."""
     process = subprocess.Popen(
         [*FEW_FILES_COMMAND, *arguments],
@@ -113,10 +113,10 @@ def few(*arguments: str) -> Iterator[subprocess.Popen[bytes]]:
 @contextmanager
 def drive_robot() -> Iterator[tuple[subprocess.Popen[bytes], str, subprocess.Popen[bytes], bytes]]:
     """A virtual robot, its port, and the command that drives it, with its output."""
-    with few("robot") as robot:
+    with run_with_few_files("robot") as robot:
         assert robot.stdout
         port = robot.stdout.readline().decode().strip()
-        with few("upload", "--port", port, "-e", FOREVER) as command:
+        with run_with_few_files("upload", "--port", port, "-e", FOREVER) as command:
             assert command.stdout
             receipt = command.stdout.readline()
             assert b"running" in receipt

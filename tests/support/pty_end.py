@@ -54,7 +54,7 @@ class PtyEnd(PtyPort):
         """Return the speed that the computer has set."""
         return _SPEEDS.get(termios.tcgetattr(self.our_end)[5], 0) or self.end.baud
 
-    def pass_ms(self, milliseconds: int, data: bytes = b"") -> bytes:
+    def advance_ms(self, milliseconds: int, data: bytes = b"") -> bytes:
         reply = b""
         with self._lock:
             self.received += data
@@ -71,7 +71,7 @@ class PtyEnd(PtyPort):
             next_s = max(next_s + 0.001, time.monotonic() - LARGEST_LAG_S)
             ready_ends, _, _ = select.select([self.our_end], [], [], 0)
             if self.simulated is None:
-                reply = self.pass_ms(1, os.read(self.our_end, 4096) if ready_ends else b"")
+                reply = self.advance_ms(1, os.read(self.our_end, 4096) if ready_ends else b"")
                 if reply:
                     os.write(self.our_end, reply)
             time.sleep(max(0.0, next_s - time.monotonic()))

@@ -157,7 +157,7 @@ class PtyRobot(PtyPort):
             self._robot.close()
         self._robot = None
 
-    def pass_ms(self, milliseconds: int, data: bytes = b"") -> bytes:
+    def advance_ms(self, milliseconds: int, data: bytes = b"") -> bytes:
         max_bytes = self.bytes_per_ms * milliseconds
         with self._lock:
             self._to_robot += data
@@ -196,8 +196,8 @@ class PtyRobot(PtyPort):
                 last_s = time.monotonic() if self.simulated else last_s
                 continue
             last_s += passed_ms / 1000
-            sent_bytes = self.pass_ms(min(passed_ms, LARGEST_LAG_MS) - 1)
-            sent_bytes += self.pass_ms(1, os.read(self.our_end, 4096) if ready_ends else b"")
+            sent_bytes = self.advance_ms(min(passed_ms, LARGEST_LAG_MS) - 1)
+            sent_bytes += self.advance_ms(1, os.read(self.our_end, 4096) if ready_ends else b"")
             if sent_bytes:
                 os.write(self.our_end, sent_bytes)
 

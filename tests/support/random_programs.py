@@ -21,7 +21,7 @@ class RandomProgram(NamedTuple):
     text: str
     kit: Kit
     senses: Senses
-    wanted_trace: str
+    expected_trace: str
     short_compilation: Compilation
     plain_compilation: Compilation  # the program without optimization
 
@@ -31,8 +31,10 @@ def random_program(seed: int) -> RandomProgram:
     oracle_kit, kit = KITS[seed % len(KITS)]
     text = programs.program(rng, oracle_kit)
     readings = programs.senses(rng, oracle_kit)
-    wanted_run = interpreter.run(text, oracle_kit, readings, MAX_MS, MAX_STEPS, seed + 1)
+    expected_run = interpreter.run(text, oracle_kit, readings, MAX_MS, MAX_STEPS, seed + 1)
     senses = Senses(readings, MAX_MS, MAX_STEPS, seed + 1)
     short_compilation = compile_text(text, kit)
     plain_compilation = compile_text(text, kit, optimize=False)
-    return RandomProgram(seed, text, kit, senses, wanted_run, short_compilation, plain_compilation)
+    return RandomProgram(
+        seed, text, kit, senses, expected_run, short_compilation, plain_compilation
+    )

@@ -142,13 +142,13 @@ def check_program(data: bytes, kit: Kit, senses: Senses) -> None:
     assert answer.is_program, f"{answer}\n{data.decode()}"
     compilation = compile_text(decode(data), kit)
     assert compilation.program is not None and compilation.program.start == answer.start
-    actual, wanted_trace = (trace(code, kit, senses) for code in (answer.code, compilation.code))
-    if any(lines[-1].endswith("LIMIT") for lines in (actual, wanted_trace)):
+    actual, expected_trace = (trace(code, kit, senses) for code in (answer.code, compilation.code))
+    if any(lines[-1].endswith("LIMIT") for lines in (actual, expected_trace)):
         common_length = (
-            min(len(actual), len(wanted_trace)) - 1
+            min(len(actual), len(expected_trace)) - 1
         )  # the meaning does not include where a run was cut
-        actual, wanted_trace = actual[:common_length], wanted_trace[:common_length]
-    assert actual == wanted_trace, data.decode()
+        actual, expected_trace = actual[:common_length], expected_trace[:common_length]
+    assert actual == expected_trace, data.decode()
 
 
 def trace(code: bytes, kit: Kit, senses: Senses) -> list[str]:

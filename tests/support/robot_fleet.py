@@ -42,12 +42,12 @@ class Pupil(PtyPort):
     def moves(self) -> bool:
         return drives_now(self.actions)
 
-    def pass_ms(self, milliseconds: int, data: bytes = b"") -> bytes:
+    def advance_ms(self, milliseconds: int, data: bytes = b"") -> bytes:
         """Let time pass, with received bytes at its end; return the bytes sent."""
         with self._lock:
-            return self._pass_ms(milliseconds, data)
+            return self._advance_ms(milliseconds, data)
 
-    def _pass_ms(self, milliseconds: int, data: bytes) -> bytes:
+    def _advance_ms(self, milliseconds: int, data: bytes) -> bytes:
         self.received += data
         if self.deaf_after is not None:
             data = data[: self.deaf_after]
@@ -103,7 +103,7 @@ class RobotFleet:
                 if pupil.simulated is not None:
                     continue
                 data = os.read(end, 4096) if end in ready_ends else b""
-                sent_bytes = pupil.pass_ms(min(passed_ms, 5 * STEP_MS), data)
+                sent_bytes = pupil.advance_ms(min(passed_ms, 5 * STEP_MS), data)
                 if sent_bytes and select.select([], [end], [], 0)[1]:
                     os.write(end, sent_bytes)
 

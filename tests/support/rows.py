@@ -34,9 +34,9 @@ def each_row(names: str, rows: Iterable[Any]) -> Callable[[Test], Test]:
     Take it where a row is quick and uses no fixture that keeps something: a test of its own costs
     six milliseconds. The row must exist.
     """
-    wanted_texts = [name.strip() for name in names.split(",")]
+    expected_texts = [name.strip() for name in names.split(",")]
     sets = [
-        pytest.ParameterSet.extract_from(row, force_tuple=len(wanted_texts) == 1) for row in rows
+        pytest.ParameterSet.extract_from(row, force_tuple=len(expected_texts) == 1) for row in rows
     ]
     assert sets, "no rows"
 
@@ -44,7 +44,7 @@ def each_row(names: str, rows: Iterable[Any]) -> Callable[[Test], Test]:
         @functools.wraps(test)
         def whole(**arguments: Any) -> None:
             def check_row(row: Any) -> None:
-                test(**arguments, **dict(zip(wanted_texts, row.values, strict=True)))
+                test(**arguments, **dict(zip(expected_texts, row.values, strict=True)))
 
             go_through(check_row, sets, lambda row: str(row.id or repr(row.values)))
 
@@ -52,9 +52,9 @@ def each_row(names: str, rows: Iterable[Any]) -> Callable[[Test], Test]:
         parameters = [
             parameter
             for name, parameter in signature.parameters.items()
-            if name not in wanted_texts
+            if name not in expected_texts
         ]
-        assert len(parameters) == len(signature.parameters) - len(wanted_texts), (
+        assert len(parameters) == len(signature.parameters) - len(expected_texts), (
             f"it takes no {names}"
         )
         whole.__signature__ = signature.replace(parameters=parameters)  # type: ignore[attr-defined]

@@ -32,33 +32,33 @@ class SensedRun(NamedTuple):
 
 
 def sensed_run(
-    text: str, seed: int, is_told: bool, byte_ticks: int, most_ms: int = 30
+    text: str, seed: int, is_told: bool, byte_ticks: int, max_change_interval_ms: int = 30
 ) -> SensedRun:
     """Run a program while its sensors' readings change, with or without reporting them."""
     robot = DebuggedRobot(text)
     assert robot.robot.until(robot.session, robot.session.tell_readings(is_told)) == OK
-    return run_with_sensors(robot, random.Random(seed), byte_ticks, most_ms)
+    return run_with_sensors(robot, random.Random(seed), byte_ticks, max_change_interval_ms)
 
 
 def run_with_sensors(
     robot: DebuggedRobot,
     rng: random.Random,
     byte_ticks: int,
-    most_ms: int = 30,
+    max_change_interval_ms: int = 30,
     run_ms: int = RUN_MS,
 ) -> SensedRun:
     """Start the program that a robot holds, and change its sensors' readings meanwhile."""
     readings = [[0] for _ in KIT.sensors]
-    robot.robot.sense(*(0 for _ in KIT.sensors))
+    robot.robot.set_readings(*(0 for _ in KIT.sensors))
     first_row = len(robot.robot.did)
     robot.start()
-    robot.robot.pace(byte_ticks)
+    robot.robot.set_byte_ticks(byte_ticks)
     events, end_ms = list[Event](), robot.robot.now_ms + run_ms
     while robot.robot.now_ms < end_ms:
         for row in readings:
             row.append(row[-1] if rng.random() < 0.5 else rng.randrange(0, 400_000, 100))
-        robot.robot.sense(*(row[-1] for row in readings))
-        events += robot.talk(rng.randint(1, most_ms))
+        robot.robot.set_readings(*(row[-1] for row in readings))
+        events += robot.talk(rng.randint(1, max_change_interval_ms))
     rows = (line.split(" ", 1) for line in robot.robot.did[first_row:])
     return SensedRun([(float(ms), action) for ms, action in rows], events, readings)
 

@@ -42,7 +42,7 @@ class PtyPort:
         self._passed_count = 0  # bytes, through the noise
         self._lock = threading.Lock()
 
-    def pass_ms(self, milliseconds: int, data: bytes = b"") -> bytes:
+    def advance_ms(self, milliseconds: int, data: bytes = b"") -> bytes:
         """Let time pass, with received bytes at its beginning; return the bytes sent meanwhile."""
         raise NotImplementedError
 
@@ -83,7 +83,7 @@ class SimulatedPort:
         while not self._from_device and left_ms > 0:
             stride = min(left_ms, STRIDE_MS)
             data, self._to_device = self._to_device, b""
-            self._from_device += self._end.pass_ms(stride, data)
+            self._from_device += self._end.advance_ms(stride, data)
             self._now_ms += stride
             left_ms -= stride
         taken_bytes, self._from_device = self._from_device[:size], self._from_device[size:]

@@ -130,9 +130,9 @@ def serve_class(ports: list[str]) -> Iterator[Class]:
 
 
 @contextmanager
-def driver(of_studio: bool = True) -> Iterator[Playwright]:
+def driver(needs_studio: bool = True) -> Iterator[Playwright]:
     """Return the driver of browsers, one per process. Other pages need no studio."""
-    need(missing() if of_studio else missing_browser())
+    need(missing() if needs_studio else missing_browser())
     from playwright.sync_api import sync_playwright
 
     with sync_playwright() as playwright:
@@ -497,6 +497,6 @@ def dances_like_the_command(page: Page) -> list[str]:
     page.select_option("#speed", "20")
     page.click("#run")
     wait_for_phase(page, "ended")
-    wanted_texts = [f"{event.ms} {event.text}" for event in run(DANCE).events]
-    assert (page.locator("#trace").text_content() or "").split("\n") == wanted_texts
-    return wanted_texts
+    expected_texts = [f"{event.ms} {event.text}" for event in run(DANCE).events]
+    assert (page.locator("#trace").text_content() or "").split("\n") == expected_texts
+    return expected_texts

@@ -31,7 +31,7 @@ def compare_task_program(
         text, senses = task_program(rng, ways=needs != 0)
         compilations = [compile_text(text, KIT, optimize=optimize) for optimize in (True, False)]
         try:
-            wanted_trace = run(text, PAPER_KIT, senses, MAX_MS)
+            expected_trace = run(text, PAPER_KIT, senses, MAX_MS)
         except Mistake:  # DEFs that are called too deep in all tasks together
             assert not any(compilation.is_right for compilation in compilations), (
                 f"seed {seed}:\n{text}"
@@ -44,8 +44,8 @@ def compare_task_program(
     ):  # often they are the same
         for machine in machines:
             actual = machine(image, KIT, Senses(senses, MAX_MS))
-            assert actual == wanted_trace, f"seed {seed}, {image.hex()}:\n{text}"
+            assert actual == expected_trace, f"seed {seed}, {image.hex()}:\n{text}"
     formatted_text = format_source(Source(text))
     assert compile_text(formatted_text, KIT).image == compilations[0].image, f"seed {seed}"
     assert format_source(Source(formatted_text)) == formatted_text, f"seed {seed}"
-    return wanted_trace.split()[-1]
+    return expected_trace.split()[-1]

@@ -104,8 +104,8 @@ def check_pins(case: Case, uno: Uno) -> None:
     is_over = not trace.endswith("LIMIT\n")
     distances = [value / 1000 for value in senses.readings.get("DISTANCE", [0])]
     for pin, name in (("A0", "LIGHT_R"), ("A1", "LIGHT_L")):
-        uno.analog(pin, senses.readings.get(name, [0])[0] // 1000)
-    uno.sonar("trigger", "echo", distances[0])
+        uno.set_analog(pin, senses.readings.get(name, [0])[0] // 1000)
+    uno.set_sonar_distance("trigger", "echo", distances[0])
     wired_uno = computer(uno)
     if image.start == "PING":
         assert wired_uno.until(wired_uno.session.hello()) == OK
@@ -130,7 +130,7 @@ def check_pins(case: Case, uno: Uno) -> None:
         if len(pulses) > triggers:
             triggers = len(pulses)
             wired_uno.run(PING_MS)
-            uno.sonar("trigger", "echo", distances[min(triggers, len(distances) - 1)])
+            uno.set_sonar_distance("trigger", "echo", distances[min(triggers, len(distances) - 1)])
     settings = motor_settings(uno, start_count)
     events = wired_uno.session.events()
     if not is_over:

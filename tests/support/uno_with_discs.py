@@ -69,18 +69,18 @@ class DrivenUno(Wired):
             powers = self._power("left") * left / 100, self._power("right") * right / 100
             self.wheels.set(self.now_ms, *powers)
             for number, wheel in enumerate(self.wheels.wheels):
-                level = wheel.counted_edges % 2 == 1
-                if level != self._levels[number]:
-                    self._levels[number] = level
-                    self.uno.drive(self._discs[number], level)
+                is_high = wheel.counted_edges % 2 == 1
+                if is_high != self._levels[number]:
+                    self._levels[number] = is_high
+                    self.uno.drive(self._discs[number], is_high)
 
     def _power(self, side: str) -> float:
         """Return the power of a motor, in percent."""
         pins = ROBOT.board.motors.pins
         pwm = self._pins[f"D{pins[f'{side}_pwm']}"]
-        level: int = pwm["value"] if pwm["is"] == "pwm" else FULL_PWM * (pwm["is"] == "high")
+        is_high: int = pwm["value"] if pwm["is"] == "pwm" else FULL_PWM * (pwm["is"] == "high")
         is_backward = self._pins[f"D{pins[f'{side}_backward']}"]["is"] == "high"
-        return (-level if is_backward else level) * 100 / FULL_PWM
+        return (-is_high if is_backward else is_high) * 100 / FULL_PWM
 
     def drive(self, text: str, timeout_ms: int = 20_000) -> str:
         """Run a program to its end and a little longer; return the cause of its end."""

@@ -59,10 +59,10 @@ def test_a_byte_order_mark_of_a_file_does_not_count() -> None:
 @pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
 def test_any_subset_of_lines_may_have_checksums(end: str) -> None:
     lines = ["LOOP(2)", "  F(1, 50)  ", "END_LOOP // twice", "", "S"]
-    want = compile_program("\n".join(lines)).image
-    for which in range(2 ** len(lines)):
-        rows = [with_checksum(row) if which >> k & 1 else row for k, row in enumerate(lines)]
-        assert compile_program(end.join(rows)).image == want, rows
+    expected = compile_program("\n".join(lines)).image
+    for line_mask in range(2 ** len(lines)):
+        rows = [with_checksum(row) if line_mask >> k & 1 else row for k, row in enumerate(lines)]
+        assert compile_program(end.join(rows)).image == expected, rows
         assert messages(end.join([*rows[:-1], "R~00000000"])) != []
 
 

@@ -196,9 +196,12 @@ def check(text: str) -> str:
     return layout
 
 
-def check_compiled(text: str, of: kit.Kit) -> None:
+def check_compiled(text: str, compiler_kit_: kit.Kit) -> None:
     """Assert that a right program and its layout compile to the same."""
-    compilation_before, then = compile_text(text, of), compile_text(check(text), of)
+    compilation_before, then = (
+        compile_text(text, compiler_kit_),
+        compile_text(check(text), compiler_kit_),
+    )
     assert compilation_before.is_right and then.is_right
     assert compilation_before.image and then.image == compilation_before.image
     assert len(then.locations) == len(compilation_before.locations)
@@ -218,20 +221,20 @@ def with_other_layout(rng: random.Random, text: str) -> str:
     newline = rng.choice(("\n", "\n", "\r\n", "\r"))
     calm = rng.choice((0.0, 0.5, 0.9))  # probability of ordinary layout
 
-    def odd(chance: float) -> bool:
+    def is_odd(chance: float) -> bool:
         return rng.random() >= calm and rng.random() < chance
 
     def line_end() -> str:
         comment = rng.choice(("//", "// a", "//b  ", "//\tc", "///", " // d // d", "//)", "//;X="))
-        return (" " + comment if odd(0.3) else rng.choice(("", "", " "))) + newline
+        return (" " + comment if is_odd(0.3) else rng.choice(("", "", " "))) + newline
 
-    out: list[str] = [line_end() for _ in range(3) if odd(0.3)]
+    out: list[str] = [line_end() for _ in range(3) if is_odd(0.3)]
     brackets, text_before = 0, ""
     for kind, written_text in code_of(text):
         if kind == ";":
             line_ends = [rng.choice((";", line_end(), line_end()))]
             line_ends += [
-                rng.choice((";", " ", line_end(), line_end())) for _ in range(4) if odd(0.4)
+                rng.choice((";", " ", line_end(), line_end())) for _ in range(4) if is_odd(0.4)
             ]
             out += line_ends
         else:
@@ -243,12 +246,12 @@ def with_other_layout(rng: random.Random, text: str) -> str:
                 rng.choice("-\u2013\u2014\u2212") if written_text == "-" else written_text.lower()
             )
             brackets += (kind == "(") - (kind == ")")
-            if brackets and odd(0.1):
+            if brackets and is_odd(0.1):
                 out += [line_end() for _ in range(rng.randint(1, 3))]
-            elif odd(0.3):
+            elif is_odd(0.3):
                 out.append(rng.choice((" ", "  ", "\t", "\u00a0")))
             if kind == "|":
-                out += [rng.choice((";", line_end())) for _ in range(3) if odd(0.3)]
+                out += [rng.choice((";", line_end())) for _ in range(3) if is_odd(0.3)]
         text_before = written_text
     return "".join(out)
 
@@ -261,10 +264,10 @@ def test_every_program_stays_the_same_program(chunk: int) -> None:
     for _ in range(PROGRAMS_PER_CHUNK):
         oracle_kit = rng.choice((PAPER_KIT, WIDE_KIT))
         text = program(rng, oracle_kit).removeprefix("\ufeff")
-        of = compiler_kit(oracle_kit)
-        check_compiled(text, of)
+        program_kit = compiler_kit(oracle_kit)
+        check_compiled(text, program_kit)
         if "check_connection" not in text.lower():
-            check_compiled(with_other_layout(rng, text), of)
+            check_compiled(with_other_layout(rng, text), program_kit)
 
 
 def test_a_single_line_stays_single_and_several_stay_several() -> None:

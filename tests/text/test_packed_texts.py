@@ -26,15 +26,17 @@ def test_packed_robot_texts_unpack_unchanged(language: str, is_small: bool) -> N
 
 def test_unused_texts_are_omitted_on_small_robots() -> None:
     """All that it says keeps its number."""
-    every, few = rows("en"), rows("en", is_small=True)
+    all_texts, small_texts = rows("en"), rows("en", is_small=True)
     unsaid_texts = [
-        text for text, packed_text in zip(every, few, strict=True) if text != packed_text
+        text
+        for text, packed_text in zip(all_texts, small_texts, strict=True)
+        if text != packed_text
     ]
     assert unsaid_texts == [
         "Not in a block", "Only one task may call this DEF", ", text mega", ", text esp32",
         "No program reads keys", "STUCK", "STUCK_LEFT", "STUCK_RIGHT",
     ]  # fmt: skip
-    assert set(few) == {*every, ""} - {*unsaid_texts}
+    assert set(small_texts) == {*all_texts, ""} - {*unsaid_texts}
 
 
 @pytest.mark.parametrize(

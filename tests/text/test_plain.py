@@ -171,9 +171,9 @@ def check_same(compilation: Compilation, kit: Kit, senses: Senses) -> None:
     assert compilation.program is not None
     code = plain_code(compilation.program)
     verify(code.code, len(kit.readings), len(kit.actuators))
-    short = "_FAR" not in disassemble(code.code)
-    assert (code.short_length == len(code.code)) == short
-    if short:
+    is_short = "_FAR" not in disassemble(code.code)
+    assert (code.short_length == len(code.code)) == is_short
+    if is_short:
         used = {row[25:].split()[0] for row in disassemble(code.code).splitlines()}
         assert not [name for name in used if FUSED_OPCODE.match(name)], used
     trace = run_python(image_for(code.code, kit, compilation.program.start), kit, senses)

@@ -149,9 +149,11 @@ def test_dashes_are_read_as_minus(dash: str) -> None:
     assert answer_to(f"M({dash}5,80)") == answer_to("M(-5,80)")
 
 
-@pytest.mark.parametrize("odd", ["é", "#", "\u2009\u2016", "\U0001f600", "\u00b0", "{", "=="])
-def test_other_characters_are_refused(odd: str) -> None:
-    assert answer_to(f"S{odd}").problem
+@pytest.mark.parametrize(
+    "odd_character", ["é", "#", "\u2009\u2016", "\U0001f600", "\u00b0", "{", "=="]
+)
+def test_other_characters_are_refused(odd_character: str) -> None:
+    assert answer_to(f"S{odd_character}").problem
 
 
 # -- its messages and their places ---------------------------------------------------------------
@@ -381,10 +383,10 @@ def test_code_and_waiting_data_share_the_buffer() -> None:
     """Code and waiting data meet: one byte less is too little."""
     text = b"SPEED = 5; IF(SPEED > 1); F(1, SPEED); ENDIF"
     # ten bytes of code, the word that is read, the block that it ends, and the name SPEED
-    least = 10 + len("ENDIF") + BLOCK_BYTES + len(" SPEED")
-    for room in range(least):
+    min_room = 10 + len("ENDIF") + BLOCK_BYTES + len(" SPEED")
+    for room in range(min_room):
         assert read_lines(KIT, text + b"\n", room)[0].problem == "FULL"
-    assert read_lines(KIT, text + b"\n", least)[0].is_program
+    assert read_lines(KIT, text + b"\n", min_room)[0].is_program
 
 
 # -- tasks --------------------------------------------------------------------------------------

@@ -79,7 +79,7 @@ CASES = [case for case in all_cases() if "tiniscript" in case.parts]
 
 
 @each_row("case", CASES)
-def test_case(case: Case) -> None:
+def test_a_program_of_the_cases_agrees(case: Case) -> None:
     parts = case.parts
     match = re.search(r"^robot *= *(\w+)", parts.get("senses", ""), re.MULTILINE)
     kit = robots.load(match[1] if match else "tinibot").kit
@@ -92,7 +92,7 @@ def test_case(case: Case) -> None:
 
 @pytest.mark.sampled("first")
 @pytest.mark.parametrize("first", range(0, PROGRAMS, 50))
-def test_random_programs(first: int) -> None:
+def test_random_programs_agree(first: int) -> None:
     for seed in range(first, first + 50):
         kit, data, senses, slips = texts_of(seed, BROKEN_TEXTS)
         check_program(data, kit, senses)
@@ -102,7 +102,7 @@ def test_random_programs(first: int) -> None:
 
 @pytest.mark.sampled("first")
 @pytest.mark.parametrize("first", range(0, PROGRAMS, 50))
-def test_random_programs_with_tasks(first: int) -> None:
+def test_random_programs_with_tasks_agree(first: int) -> None:
     for seed in range(first, first + 50):
         kit, data, senses, slips = tasks_of(seed, BROKEN_TEXTS)
         check_program(data, kit, senses)
@@ -120,7 +120,7 @@ def test_a_kit_without_speed_agrees(speed: int, turn: int) -> None:
 
 @pytest.mark.sampled("first")
 @pytest.mark.parametrize("first", range(0, SOUPS, 300))
-def test_random_tokens(first: int) -> None:
+def test_random_tokens_agree(first: int) -> None:
     for kit, data in map(soup, range(first, first + 300)):
         assert check_bytes(data, kit) is not None
 
@@ -129,7 +129,7 @@ def test_random_tokens(first: int) -> None:
 @pytest.mark.parametrize(
     "text", [b"S // %b\n", b"S//%b", b"X%b=1", b"X=1%b", b"X=1.%b", b"F(1%b,2)", b"%bS", b"AN%bD=1"]
 )
-def test_every_byte_and_pair_of_bytes(text: bytes) -> None:
+def test_every_byte_and_pair_of_bytes_agrees(text: bytes) -> None:
     for byte in range(256):
         check_bytes(text % bytes((byte,)), KITS[1][1])
         for other_byte in b"\x00\x02\x80\x93\xa0\xbf\xc2\xe2 /=9A":
@@ -153,8 +153,8 @@ def test_insufficient_room_only_causes_full_errors(room: int) -> None:
         kit, data, _, slips = texts_of(seed, 1)
         for data_line in (data, *slips):
             check_bytes(data_line, kit, room)
-            want, answer = reader_of(kit).read(data_line), reader_of(kit, room).read(data_line)
-            assert answer.problem == "FULL" or answer == want
+            expected, answer = reader_of(kit).read(data_line), reader_of(kit, room).read(data_line)
+            assert answer.problem == "FULL" or answer == expected
 
 
 FOUND_PROBLEMS: Counter[str] = Counter()  # problems found by a campaign in incomplete programs

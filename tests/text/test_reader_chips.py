@@ -38,7 +38,7 @@ def test_the_chip_gives_the_same_answers(name: str, room: int) -> None:
     expected = [reader.read(text) for text in all_texts]
     reader.close()
     answers = start_emulator(name).read(all_texts, KIT, room)
-    for text, mine, other in zip(all_texts, expected, answers, strict=True):
-        assert other == mine, text
+    for text, expected_answer, answer in zip(all_texts, expected, answers, strict=True):
+        assert answer == expected_answer, text
     assert sum(answer.is_program for answer in answers) > 1000
     assert sum(bool(answer.problem) for answer in answers) > 1000

@@ -78,16 +78,16 @@ def describe(operations: list[Operation]) -> str:
     return ", ".join(rows)
 
 
-@each_row("what, before, after, wanted_operations, stay", CASES)
+@each_row("what, before, after, expected_operations, stay", CASES)
 def test_equal_parts_are_kept(
-    what: str, before: str, after: str, wanted_operations: str, stay: int
+    what: str, before: str, after: str, expected_operations: str, stay: int
 ) -> None:
     numbers, new_numbers = count(1), count(1)
     old_tree = parse_tree(before, lambda: f"o.{next(numbers)}")
     operations = find_operations(old_tree, after, lambda: f"n.{next(new_numbers)}")
     new_tree = apply_change(old_tree, Change("n:1", tuple(operations))).tree
     assert new_tree.shape() == parse_tree(after).shape()
-    assert wanted_operations in ("*", describe(operations))
+    assert expected_operations in ("*", describe(operations))
     assert sum(id.startswith("o.") for id in new_tree.subtree_ids()) == stay
 
 

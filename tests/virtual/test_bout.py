@@ -48,25 +48,25 @@ def bout(text: str, robot: str = "sumo") -> Bout:
     return made_bout
 
 
-def draw_crowded_world(draw: random.Random) -> World:
+def draw_crowded_world(rng: random.Random) -> World:
     """Rivals, walls and a robot, without overlaps."""
-    text = RING.replace("border = false", f"border = {draw.choice(['true', 'false'])}")
-    for x, y in draw.sample([(100, 60), (100, 100), (140, 120), (90, 150)], draw.randint(1, 3)):
+    text = RING.replace("border = false", f"border = {rng.choice(['true', 'false'])}")
+    for x, y in rng.sample([(100, 60), (100, 100), (140, 120), (90, 150)], rng.randint(1, 3)):
         text += (
-            f"[[rivals]]\nx_cm = {x}\ny_cm = {y}\nheading = {draw.randint(-180, 180)}\n"
-            f"length_cm = {draw.randint(8, 24)}\nwidth_cm = {draw.randint(8, 20)}\n"
-            f"power_percent = {draw.randint(0, 100)}\nspeed_cm_s = {draw.randint(20, 80)}\n"
+            f"[[rivals]]\nx_cm = {x}\ny_cm = {y}\nheading = {rng.randint(-180, 180)}\n"
+            f"length_cm = {rng.randint(8, 24)}\nwidth_cm = {rng.randint(8, 20)}\n"
+            f"power_percent = {rng.randint(0, 100)}\nspeed_cm_s = {rng.randint(20, 80)}\n"
         )
-    if draw.random() < 0.5:
+    if rng.random() < 0.5:
         text += "[[walls]]\npoints = [[20, 130], [70, 130]]\n"
         text += "[[boxes]]\nx_cm = 175\ny_cm = 90\nlength_cm = 12\nwidth_cm = 40\n"
     return read(text, "crowded")
 
 
-def powers(draw: random.Random) -> list[tuple[int, float, float]]:
+def powers(rng: random.Random) -> list[tuple[int, float, float]]:
     """Times in ms, and the powers of the motors from then on."""
-    times = sorted(draw.sample(range(8000), 12))
-    return [(ms, draw.randint(-100, 100), draw.choice([100, 60, 0, -80])) for ms in times]
+    times = sorted(rng.sample(range(8000), 12))
+    return [(ms, rng.randint(-100, 100), rng.choice([100, 60, 0, -80])) for ms in times]
 
 
 def rivals_of(driving: Driving) -> list[Pose]:
@@ -79,11 +79,11 @@ def rivals_of(driving: Driving) -> list[Pose]:
 @pytest.mark.sampled("seed")
 @pytest.mark.parametrize("seed", range(12))
 def test_observers_change_nothing(seed: int) -> None:
-    draw = random.Random(seed)
+    rng = random.Random(seed)
     world, moves, body = (
-        draw_crowded_world(draw),
-        powers(draw),
-        robots.load(draw.choice(robots.names())).body,
+        draw_crowded_world(rng),
+        powers(rng),
+        robots.load(rng.choice(robots.names())).body,
     )
     end_states = []
     for look_count in (0, 3, 40):
@@ -121,9 +121,9 @@ def test_a_program_among_rivals_is_reproducible(name: str) -> None:
 @pytest.mark.sampled("seed", keep=2)
 @pytest.mark.parametrize("seed", range(24))
 def test_no_body_ever_overlaps_another(seed: int) -> None:
-    draw = random.Random(seed)
-    world, moves = draw_crowded_world(draw), powers(draw)
-    driving = driving_in(robots.load(draw.choice(robots.names())).body, world)
+    rng = random.Random(seed)
+    world, moves = draw_crowded_world(rng), powers(rng)
+    driving = driving_in(robots.load(rng.choice(robots.names())).body, world)
     assert isinstance(driving, Bout)
     touched_count = 0
     for (ms, left, right), (until, _, _) in zip(moves, [*moves[1:], (9000, 0, 0)], strict=True):
@@ -133,8 +133,8 @@ def test_no_body_ever_overlaps_another(seed: int) -> None:
             bodies = driving.bodies()
             for k, (hull, pose) in enumerate(bodies):
                 for other, place in bodies[:k]:
-                    apart = gap_between(hull.spine(pose), other.spine(place))[0]
-                    gap = apart - hull.radius_cm - other.radius_cm
+                    gap_cm = gap_between(hull.spine(pose), other.spine(place))[0]
+                    gap = gap_cm - hull.radius_cm - other.radius_cm
                     assert gap > -1e-3, f"{at_ms} ms"
                     touched_count += gap < 0.1
                 contact = hull.contact(pose, driving.obstacles)
@@ -160,28 +160,28 @@ def test_a_pushed_rival_moves_in_the_push_direction(heading: int, power: int) ->
 
 
 @pytest.mark.parametrize("speed", [20, 45, 90])
-@pytest.mark.parametrize("mine", [30, 55, 80])
-@pytest.mark.parametrize("its", [30, 55, 80])
-def test_the_stronger_one_pushes_the_other_back(mine: int, its: int, speed: int) -> None:
+@pytest.mark.parametrize("power", [30, 55, 80])
+@pytest.mark.parametrize("rival_power", [30, 55, 80])
+def test_the_stronger_one_pushes_the_other_back(power: int, rival_power: int, speed: int) -> None:
     """Head on: that of more power goes ahead, however fast each of them is alone."""
-    rival = HEAD_ON_RIVAL.format(its).replace("speed_cm_s = 45", f"speed_cm_s = {speed}")
+    rival = HEAD_ON_RIVAL.format(rival_power).replace("speed_cm_s = 45", f"speed_cm_s = {speed}")
     driving = bout(RING.replace("x_cm = 60", "x_cm = 80") + rival)
-    driving.set_motors(0, mine, mine)
+    driving.set_motors(0, power, power)
     met_pose = driving.advance_to(900)
     later = driving.advance_to(1500)
     way = later.x_cm - met_pose.x_cm
-    assert (way > 0.5) == (mine > its) and (way < -0.5) == (mine < its)
+    assert (way > 0.5) == (power > rival_power) and (way < -0.5) == (power < rival_power)
 
 
 def test_a_single_body_moves_as_without_a_ring() -> None:
     """A rival that is far away, and asleep, changes nothing."""
-    far = RING.replace("x_cm = 60", "x_cm = 30") + SLEEPING_RIVAL.replace(
+    far_world = RING.replace("x_cm = 60", "x_cm = 30") + SLEEPING_RIVAL.replace(
         "x_cm = 100", "x_cm = 170"
     )
-    draw = random.Random(5)
+    rng = random.Random(5)
     for _ in range(20):
-        left, right = draw.randint(-100, 100), draw.randint(-100, 100)
-        driving = bout(far)
+        left, right = rng.randint(-100, 100), rng.randint(-100, 100)
+        driving = bout(far_world)
         driving.set_motors(0, left, right)
         expected = move_pose(SUMO.body, Pose(30, 100, 0), left, right, 400)
         assert driving.advance_to(400) == pytest.approx(expected, abs=1e-6)
@@ -204,10 +204,10 @@ def test_a_rival_begins_when_the_robot_first_moves() -> None:
 
 
 def test_an_unpushed_rival_stays_in_its_ring() -> None:
-    draw = random.Random(8)
+    rng = random.Random(8)
     for _ in range(6):
         text = RING.replace("x_cm = 60", "x_cm = 8")  # the robot is outside, and seen
-        heading, power = draw.randint(-180, 180), draw.choice([30, 60, 100])
+        heading, power = rng.randint(-180, 180), rng.choice([30, 60, 100])
         driving = bout(text + HEAD_ON_RIVAL.format(power).replace("180", str(heading)))
         driving.has_fallen = True  # falling does not end this run
         driving.set_motors(0, 1, 0)
@@ -221,26 +221,26 @@ def test_an_unpushed_rival_stays_in_its_ring() -> None:
 
 
 def test_a_distance_sensor_sees_where_a_rival_is() -> None:
-    draw = random.Random(6)
+    rng = random.Random(6)
     count = 0
     for _ in range(200):
-        x, y = draw.uniform(40, 160), draw.uniform(40, 160)
+        x, y = rng.uniform(40, 160), rng.uniform(40, 160)
         text = RING + f"[[rivals]]\nx_cm = {x:.3f}\ny_cm = {y:.3f}\n"
         driving = bout(text)
-        pose = Pose(draw.uniform(30, 170), draw.uniform(30, 170), draw.uniform(0, 360))
+        pose = Pose(rng.uniform(30, 170), rng.uniform(30, 170), rng.uniform(0, 360))
         reading = (
             Sensing(SUMO, read(text, "ring"), other_outlines=driving.other_outlines).peek(2, pose)
             / 1000
         )
         along = math.radians(pose.heading)
         eye = (pose.x_cm + 5 * math.cos(along), pose.y_cm + 5 * math.sin(along))
-        far = math.dist(eye, (x, y)) - 5.5
+        distance_cm = math.dist(eye, (x, y)) - 5.5
         angle_off = math.atan2(y - eye[1], x - eye[0]) - along
         angle_off = abs((angle_off + math.pi) % (2 * math.pi) - math.pi)
-        if angle_off < math.radians(15) and far > 3:
+        if angle_off < math.radians(15) and distance_cm > 3:
             count += 1
-            assert reading == pytest.approx(far, abs=0.3)
-        elif angle_off > math.radians(60) and far > 10:
+            assert reading == pytest.approx(distance_cm, abs=0.3)
+        elif angle_off > math.radians(60) and distance_cm > 10:
             assert reading == 400
     assert count > 8
 
@@ -265,12 +265,12 @@ def test_black_and_white_areas_are_sensed() -> None:
 @pytest.mark.parametrize("power", [40, 60, 100])
 def test_the_edge_is_seen_before_the_robot_is_out(power: int) -> None:
     """This holds in every direction, in time to stop, even at full speed."""
-    draw = random.Random(power)
+    rng = random.Random(power)
     world = worlds.load("sumo")._replace(rivals=())
     [ring] = world.rings
     asleep = Rival(Pose(ring.place.x, ring.place.y, 0), 11, 11, 40, 0)
     for _ in range(10):
-        heading = draw.uniform(0, 360)
+        heading = rng.uniform(0, 360)
         along = math.radians(heading)
         place = (ring.place.x + 20 * math.cos(along), ring.place.y + 20 * math.sin(along))
         driving = driving_in(

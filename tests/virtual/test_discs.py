@@ -146,12 +146,12 @@ def test_interrupted_moves_end_at_once(text: str) -> None:
 
 
 @pytest.mark.parametrize("after_ms", [0, 5, 60, 700, 2400, 2500, 2560, 2620, 2700])
-@pytest.mark.parametrize("how", ["button", "client"])
-def test_a_stop_in_any_phase_stops(after_ms: int, how: str) -> None:
+@pytest.mark.parametrize("stopper", ["button", "client"])
+def test_a_stop_in_any_phase_stops(after_ms: int, stopper: str) -> None:
     """While it drives, slows down, rolls, or goes back: no motor is driven again."""
     robot, talk = started_robot("F(60 CM, 60); R(90 DEG, 60)")
     talk.wait(after_ms)
-    if how == "button":
+    if stopper == "button":
         robot.press()
         robot.let_go()
     else:
@@ -362,14 +362,14 @@ def test_a_wheel_turned_back_by_hand_is_measured(profile: Robot, sees: bool) -> 
     ahead."""
     robot, talk = started_robot(WAY, profile=profile)
     one = wheel(robot, 0)
-    begun_cm = one.turned_cm
+    start_cm = one.turned_cm
     talk.wait(800)
     for _ in range(12):
         one.turned_cm -= one.edge_cm
         talk.wait(20)
     talk.wait(6000)
     assert robot.fault == "" and not robot.is_running
-    off_cm = one.turned_cm - begun_cm - 60
+    off_cm = one.turned_cm - start_cm - 60
     assert abs(off_cm) < 1.5 if sees else -14 < off_cm < -8
 
 
@@ -422,12 +422,12 @@ def hold(one: Wheel, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.parametrize("number", [0, 1])
-@pytest.mark.parametrize(("text", "how"), [
+@pytest.mark.parametrize(("text", "end_kind"), [
     (WAY, "held"), (WAY, "stopped"), (f"{WAY} UNTIL(TIME > 0.5)", "held"), (WAY, "lost"),
     (f"{WAY}\nTASK; W(0.4); S; W(60); END_TASK", "held"),
 ])  # fmt: skip
 def test_the_next_program_drives_straight_after_any_end_of_a_move(
-    text: str, how: str, number: int, monkeypatch: pytest.MonkeyPatch
+    text: str, end_kind: str, number: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A wheel that stood left the other one's lead in the controller: the robot drove a curve."""
     for seed in (1, 2):
@@ -435,8 +435,8 @@ def test_the_next_program_drives_straight_after_any_end_of_a_move(
         talk.wait(50)
         with monkeypatch.context() as patch:
             hold(wheel(robot, number), patch)
-            talk.wait(420 if how == "stopped" else 900)
-        if how == "lost":
+            talk.wait(420 if end_kind == "stopped" else 900)
+        if end_kind == "lost":
             robot.step(robot.now_ms + 1500)
         talk.session.stop(robot.now_ms)
         talk.wait_for(talk.session.clear())

@@ -67,8 +67,8 @@ def test_segments_cross_or_are_a_distance_apart() -> None:
 def test_a_cone_sees_the_nearest_point_inside(
     heading: float, half: float, distance_cm: float
 ) -> None:
-    least = nearest_seen([WALL_ACROSS], Point(0, 0), math.radians(heading), math.radians(half))
-    assert least == pytest.approx(distance_cm)
+    nearest_cm = nearest_seen([WALL_ACROSS], Point(0, 0), math.radians(heading), math.radians(half))
+    assert nearest_cm == pytest.approx(distance_cm)
     for y in (-5, 5):  # walls that end on the border
         assert nearest_seen([Segment(Point(10, 0), Point(10, y))], Point(0, 0), 0, 0) == 10
 
@@ -214,8 +214,8 @@ def test_distance_is_that_of_the_nearest_wall_in_the_cone() -> None:
 
 def test_distance_has_the_limits_of_its_sensor() -> None:
     assert read(floor(), DISTANCE, Pose(200 - NOSE_CM - 1, 100, 0)) == 2
-    far = floor(size=2000, start="x_cm = 1000\ny_cm = 1000")
-    assert read(far, DISTANCE, Pose(1000, 1000, 0)) == 400
+    wide_floor = floor(size=2000, start="x_cm = 1000\ny_cm = 1000")
+    assert read(wide_floor, DISTANCE, Pose(1000, 1000, 0)) == 400
 
 
 def test_a_lamp_is_brighter_near_and_ahead_and_not_through_a_wall() -> None:

@@ -59,20 +59,20 @@ def test_no_prefix_of_a_browser_request_is_accepted(name: str) -> None:
 
 
 def test_all_frames_of_a_computer_are_accepted() -> None:
-    chance = Random(3)
+    rng = Random(3)
     session = Session(7, 9600, 5)
     session.hello()
     firsts = [session.poll(0), bytes(8), bytes(2)]
     assert firsts[0][0] == 0
     numbers = [message.number for message in BY_NAME.values() if message.number < 32]
     for _ in range(20_000):
-        payload = chance.randbytes(chance.randrange(PAYLOAD_BYTES))
-        if chance.random() < 0.5:
-            payload = bytes(chance.choice((0, 0, 3, 22)) for _ in payload)
-        number = chance.choice(numbers)
+        payload = rng.randbytes(rng.randrange(PAYLOAD_BYTES))
+        if rng.random() < 0.5:
+            payload = bytes(rng.choice((0, 0, 3, 22)) for _ in payload)
+        number = rng.choice(numbers)
         if number == BY_NAME["STATUS"].number:
             payload = b""
-        data = encode_frame(Frame(number, chance.randrange(256), chance.randrange(256), payload))
+        data = encode_frame(Frame(number, rng.randrange(256), rng.randrange(256), payload))
         firsts.append(b"\0" + data)
     for data in firsts:
         assert sniff_robot_client(data) is True, data.hex()
@@ -183,11 +183,11 @@ def crowd(simulator: Simulator, count: int, says: bytes = b"") -> list[socket.so
 def test_many_silent_clients_block_nobody(simulator: Simulator, says: bytes) -> None:
     idle = crowd(simulator, 300, says)
     [client] = crowd(simulator, 1)
-    is_said, most, heard_bytes = False, 0, bytearray()
+    is_said, max_callers, heard_bytes = False, 0, bytearray()
 
     def ask_and_look() -> bool:
-        nonlocal is_said, most
-        most = max(most, len(simulator.transports._callers))
+        nonlocal is_said, max_callers
+        max_callers = max(max_callers, len(simulator.transports._callers))
         # The server may not be ready yet.
         with contextlib.suppress(BlockingIOError, BrokenPipeError):
             if not is_said:
@@ -195,7 +195,7 @@ def test_many_silent_clients_block_nobody(simulator: Simulator, says: bytes) -> 
         return is_said and b"\0" in receive(client, heard_bytes)
 
     until(simulator, ask_and_look)
-    assert MOST_CALLERS / 2 < most <= MOST_CALLERS
+    assert MOST_CALLERS / 2 < max_callers <= MOST_CALLERS
     for connection in (client, *idle):
         connection.close()
 

@@ -91,12 +91,12 @@ def test_each_task_has_three_stars(name: str) -> None:
         score.update(robot)
 
     for x_cm, y_cm in WAYS[name]:
-        while (far := math.dist((x_cm, y_cm), robot.pose[:2])) > 2:
+        while (distance_cm := math.dist((x_cm, y_cm), robot.pose[:2])) > 2:
             assert robot.now_ms < 1000 * world.seconds, robot.pose
             x, y, heading = robot.pose
             angle_off = math.degrees(math.atan2(y_cm - y, x_cm - x)) - heading
             angle_off = (angle_off + 180) % 360 - 180
-            ahead = abs(angle_off) < max(4, 60 / far)
-            motors(*((66, 66) if ahead else (-40, 40) if angle_off > 0 else (40, -40)))
+            is_ahead = abs(angle_off) < max(4, 60 / distance_cm)
+            motors(*((66, 66) if is_ahead else (-40, 40) if angle_off > 0 else (40, -40)))
         motors(0, 0)
     assert score.state() == {**(score.state() or {}), "stars": 3, "taken": len(world.flags)}

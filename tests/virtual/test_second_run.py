@@ -103,19 +103,22 @@ def check(seed: int) -> str:
     text = program(rng, name)
     other = robot_in(floor(WALL)._replace(start=pose), name, baud=0)
     other.step(1500)
-    actions, want = run_program(Talk(robot, 7), text), run_program(Talk(other, 7), text)
-    explanation = f"seed {seed} {ending} {name} {text}\n{actions}\nnot\n{want}"
-    assert actions[:2] == want[:2], explanation
-    did_pose, want_pose = actions.pose, want.pose
-    assert hypot(did_pose.x_cm - want_pose.x_cm, did_pose.y_cm - want_pose.y_cm) < TOLERANCE_CM, (
-        explanation
-    )
-    assert abs(did_pose.heading - want_pose.heading) < TOLERANCE_DEGREES, explanation
-    actuators_left = {k: value for k, value in actions.actuators.items() if k not in want.actuators}
-    assert {**want.actuators, **actuators_left} == actions.actuators, explanation
+    actions, expected = run_program(Talk(robot, 7), text), run_program(Talk(other, 7), text)
+    explanation = f"seed {seed} {ending} {name} {text}\n{actions}\nnot\n{expected}"
+    assert actions[:2] == expected[:2], explanation
+    actual_pose, expected_pose = actions.pose, expected.pose
+    assert (
+        hypot(actual_pose.x_cm - expected_pose.x_cm, actual_pose.y_cm - expected_pose.y_cm)
+        < TOLERANCE_CM
+    ), explanation
+    assert abs(actual_pose.heading - expected_pose.heading) < TOLERANCE_DEGREES, explanation
+    actuators_left = {
+        k: value for k, value in actions.actuators.items() if k not in expected.actuators
+    }
+    assert {**expected.actuators, **actuators_left} == actions.actuators, explanation
     # Outputs that the program's own end leaves on.
     assert is_done or not any(actuators_left.values()), explanation
-    return ending if len(want.trace) > 3 else "little"
+    return ending if len(expected.trace) > 3 else "little"
 
 
 def check_power_on(seed: int) -> int:

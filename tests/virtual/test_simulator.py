@@ -23,14 +23,14 @@ def test_a_flood_waits_outside(simulator: Simulator) -> None:
     """The line keeps its speed; data without room on it stays with the sender."""
     flood = b"\0\0" + bytes(range(1, 256)) * 400
     with visit(simulator) as client:
-        sent_count, most = 0, 0
+        sent_count, max_waiting = 0, 0
         for _ in range(300):
             with contextlib.suppress(BlockingIOError):
                 sent_count += client.send(flood)
             simulator.turn(0.01)
-            most = max(most, simulator.waiting_bytes)
+            max_waiting = max(max_waiting, simulator.waiting_bytes)
         assert sent_count > 100_000
-        assert MOST_WAITING_BYTES < most < MOST_WAITING_BYTES + limits.READ_BYTES + 100
+        assert MOST_WAITING_BYTES < max_waiting < MOST_WAITING_BYTES + limits.READ_BYTES + 100
 
 
 def test_a_client_that_does_not_read_loses_the_unread_data(

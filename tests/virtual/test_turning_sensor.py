@@ -29,11 +29,11 @@ def with_neck(low: int = 0, high: int = 180) -> Robot:
 def test_a_turned_sensor_reads_like_one_facing_that_way(low: int, high: int) -> None:
     """This holds anywhere in a world, for any names of its range: in the middle, it looks ahead."""
     necked_robot, world = with_neck(low, high), worlds.load("obstacles")
-    draw = random.Random(3)
+    rng = random.Random(3)
     readings = set()
     for _ in range(60):
-        pose = Pose(draw.uniform(20, 200), draw.uniform(20, 180), draw.uniform(0, 360))
-        value = draw.randint(low, high)
+        pose = Pose(rng.uniform(20, 200), rng.uniform(20, 180), rng.uniform(0, 360))
+        value = rng.randint(low, high)
         place = necked_robot.body.places["DISTANCE"]
         fixed_place = place._replace(heading=value - (low + high) / 2, turns_with="")
         body = necked_robot.body._replace(places={"DISTANCE": fixed_place})

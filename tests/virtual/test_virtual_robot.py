@@ -241,8 +241,8 @@ def test_a_power_cycle_ends_the_run_where_the_robot_is() -> None:
 @pytest.mark.parametrize("seed", range(1, 6))
 def test_on_a_bad_line_everything_arrives_or_ends(seed: int) -> None:
     robot = robot_in(seed=seed)
-    chance = Random(seed)
-    to_robot, to_computer = BadLine(15, chance), BadLine(15, chance)
+    rng = Random(seed)
+    to_robot, to_computer = BadLine(15, rng), BadLine(15, rng)
     talk = Talk(robot)
     session = talk.session
 

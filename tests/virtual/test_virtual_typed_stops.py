@@ -60,14 +60,14 @@ def test_silence_completes_the_stop_of_a_possible_web_page(
 
 
 def test_the_virtual_robot_recognizes_stop_lines_like_a_robot() -> None:
-    chance, robot, kinds = Random(4), robot_in(), set()
+    rng, robot, kinds = Random(4), robot_in(), set()
     parts = [
         b"S", b"sTOP", b"T", b" ", b"\t;", b"\x1b", b"\x1b[", b"O", b"1", b"A", b"\x7f", b"\1",
         b".", b"NOW", b"alto", b"PARA", b"R",
     ]  # fmt: skip
     for _ in range(200):
-        word = b"".join(chance.choices(parts, k=chance.randrange(1, 4)))
-        word += chance.choice((b"S", b"S", b"Stop", b"Halt!", b"now"))
+        word = b"".join(rng.choices(parts, k=rng.randrange(1, 4)))
+        word += rng.choice((b"S", b"S", b"Stop", b"Halt!", b"now"))
         wait(robot, TEXT_MS + SILENCE_MS)  # the robot's text comes after its frames
         wait(robot, 100, RUNNING_LINE)
         assert robot.is_running

@@ -31,13 +31,13 @@ BATCH_COUNT = 160  # batches of the tests, of which a commit runs one; a campaig
 
 def check_machine(program: RandomProgram, name: str, machine: Machine) -> None:
     """Check that a machine agrees with the oracle."""
-    for how, image in (
+    for suffix, image in (
         ("", program.short_compilation.image),
         (", plain", program.plain_compilation.image),
     ):
         trace = machine(image, program.kit, program.senses)
-        assert are_equivalent(program.wanted_trace, trace), (
-            f"{name}, seed {program.seed}{how}:\n{program.text}"
+        assert are_equivalent(program.expected_trace, trace), (
+            f"{name}, seed {program.seed}{suffix}:\n{program.text}"
         )
 
 
@@ -63,16 +63,16 @@ def check_broken(seed: int) -> None:
     oracle_kit, kit = KITS[seed % len(KITS)]
     text = programs.break_text(rng, programs.program(rng, oracle_kit))
     try:
-        want = interpreter.run(text, oracle_kit, {}, MAX_MS, MAX_STEPS, 1)
+        oracle_run = interpreter.run(text, oracle_kit, {}, MAX_MS, MAX_STEPS, 1)
     except interpreter.Mistake:
-        want = None
+        oracle_run = None
     compilation = compile_text(text, kit)
     for language in ("en", "es"):
         for diagnostic in compilation.diagnostics[:5]:
             assert as_text(
                 message(diagnostic, compilation.source, language), compilation.source, language
             )
-    if want is None:
+    if oracle_run is None:
         assert not compilation.is_right or reads_more(text), f"seed {seed}, oracle refuses:\n{text}"
     else:
         assert compilation.is_right, f"seed {seed}, oracle accepts:\n{text}"
@@ -91,14 +91,14 @@ def batches() -> list[range]:
 
 @pytest.mark.sampled("seeds")
 @pytest.mark.parametrize("seeds", batches(), ids=lambda seeds: f"from {seeds.start}")
-def test_random_programs(seeds: range) -> None:
+def test_random_programs_agree(seeds: range) -> None:
     for seed in seeds:
         check_program(seed)
 
 
 @pytest.mark.sampled("seeds")
 @pytest.mark.parametrize("seeds", batches(), ids=lambda seeds: f"from {seeds.start}")
-def test_broken_programs(seeds: range) -> None:
+def test_broken_programs_are_reported_and_right_ones_agree(seeds: range) -> None:
     for seed in seeds:
         check_broken(seed)
 

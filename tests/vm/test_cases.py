@@ -46,7 +46,9 @@ def test_program_compiles_or_its_mistake_is_stated(case: Case) -> None:
 
 @pytest.mark.parametrize("machine", MACHINES)
 @each_row("case", having("tiniscript", "robot"))
-def test_robot(case: Case, machine: str, request: pytest.FixtureRequest) -> None:
+def test_a_program_has_its_stated_trace(
+    case: Case, machine: str, request: pytest.FixtureRequest
+) -> None:
     expect(case, "robot", trace_of(case, MACHINES[machine]), request)
 
 

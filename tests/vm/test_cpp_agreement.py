@@ -94,7 +94,7 @@ def check_and_run(codes: Sequence[bytes]) -> None:
         compare_runs(host(), code, WIDE_KIT, Senses(max_ms=100, max_steps=50))
 
 
-def test_all_codes_of_up_to_two_bytes() -> None:
+def test_all_codes_of_up_to_two_bytes_agree() -> None:
     check_and_run(
         [bytes(values) for size in range(3) for values in product(range(256), repeat=size)]
     )
@@ -102,7 +102,7 @@ def test_all_codes_of_up_to_two_bytes() -> None:
 
 @pytest.mark.sampled("few_at")
 @pytest.mark.parametrize("few_at", [1, 2])
-def test_codes_of_three_bytes_with_two_opcodes(few_at: int) -> None:
+def test_codes_of_three_bytes_with_two_opcodes_agree(few_at: int) -> None:
     """All pairs of opcodes; the byte at `few_at` is one of the edges of its ranges."""
     opcodes = [op.code for op in OPS if op.needs != NEEDS_GO]
     sets = [opcodes, opcodes, opcodes]
@@ -114,8 +114,10 @@ def test_codes_of_three_bytes_with_two_opcodes(few_at: int) -> None:
 def test_all_codes_of_three_bytes_run_safely(first: int) -> None:
     """In C++ alone: code accepted by its verifier never fails a run-time check."""
     for byte in range(first, first + 16):
-        accepted_count, bad, _ = host().all_of_three(byte, 3, 2)
-        assert bad == 0, f"{bad} of {accepted_count} codes that begin with {byte:02x}"
+        accepted_count, wrong_count, _ = host().all_of_three(byte, 3, 2)
+        assert wrong_count == 0, (
+            f"{wrong_count} of {accepted_count} codes that begin with {byte:02x}"
+        )
 
 
 def check_three(first: int) -> int:
@@ -123,12 +125,12 @@ def check_three(first: int) -> int:
 
     Return how many are accepted.
     """
-    accepted_count, bad, checksum = host().all_of_three(first, 3, 2)
-    ours = 0
+    accepted_count, wrong_count, checksum = host().all_of_three(first, 3, 2)
+    python_checksum = 0
     for rest in product(range(256), repeat=2):
         verdict = python_verdict(bytes((first, *rest)), 3, 2)
-        ours = zlib.crc32(struct_pack("<BH", *verdict), ours)
-    assert (bad, checksum) == (0, ours), f"{first:02x}"
+        python_checksum = zlib.crc32(struct_pack("<BH", *verdict), python_checksum)
+    assert (wrong_count, checksum) == (0, python_checksum), f"{first:02x}"
     return accepted_count
 
 
@@ -177,10 +179,10 @@ def test_the_clock_may_begin_anywhere_and_wrap_around() -> None:
 @pytest.mark.parametrize("late_ms", [0, 1, 19, 20, 21, 25, 100, 3000])
 def test_ticks_may_come_late(late_ms: int) -> None:
     """A program's own clock catches up with a delay of up to 20 ms, and not with more."""
-    each_ms = [count * 7 % (late_ms + 1) for count in range(1, 200)]
+    delays_ms = [count * 7 % (late_ms + 1) for count in range(1, 200)]
     for image, kit, senses in some_programs():
-        theirs = host().run_late(image, kit, senses, each_ms)
-        assert theirs == run_late(image, kit, senses, each_ms), theirs
+        cpp_result = host().run_late(image, kit, senses, delays_ms)
+        assert cpp_result == run_late(image, kit, senses, delays_ms), cpp_result
 
 
 def test_a_watched_move_may_last_longer_than_the_clock() -> None:
@@ -195,8 +197,8 @@ def test_weeks_may_pass_between_two_ticks() -> None:
     for number, (image, kit, senses) in enumerate(some_programs()):
         rng = random.Random(number)
         late_ms = [rng.choice((0, 7, 30, rng.randrange(2**30 - 10**6))) for _ in range(60)]
-        theirs = host().run_late(image, kit, senses, late_ms)
-        assert theirs == run_late(image, kit, senses, late_ms), theirs
+        cpp_result = host().run_late(image, kit, senses, late_ms)
+        assert cpp_result == run_late(image, kit, senses, late_ms), cpp_result
 
 
 def test_a_robot_that_is_not_ready_is_polled_again() -> None:
@@ -216,13 +218,13 @@ def test_a_robot_that_is_not_ready_is_polled_again() -> None:
 
 @pytest.mark.sampled("seed")
 @pytest.mark.parametrize("seed", range(2))
-def test_random_codes_with_tasks(seed: int) -> None:
+def test_random_codes_with_tasks_agree(seed: int) -> None:
     cpp_checks.check_task_codes(host(), seed, 5000)
 
 
 @pytest.mark.sampled("first", keep=2)
 @pytest.mark.parametrize("first", range(0, 2000, 250))
-def test_random_programs_with_tasks(first: int) -> None:
+def test_random_programs_with_tasks_agree(first: int) -> None:
     cpp_checks.check_task_programs(host(), first, 250)
 
 
@@ -238,8 +240,8 @@ def check_late_turns(late_of: Callable[[random.Random], int]) -> None:
     for number, (image, senses) in enumerate(some_task_programs(0, 200)):
         rng = random.Random(number)
         late_ms = [late_of(rng) for _ in range(80)]
-        theirs = host().run_late(image, KIT, senses, late_ms)
-        assert theirs == run_late(image, KIT, senses, late_ms, machine_of), theirs
+        cpp_result = host().run_late(image, KIT, senses, late_ms)
+        assert cpp_result == run_late(image, KIT, senses, late_ms, machine_of), cpp_result
 
 
 @pytest.mark.sampled("late_ms")
@@ -267,13 +269,13 @@ def test_a_task_whose_reading_is_not_ready_lets_others_continue(not_ready: int) 
 
 @pytest.mark.sampled("seed")
 @pytest.mark.parametrize("seed", range(2))
-def test_random_codes_with_ways(seed: int) -> None:
+def test_random_codes_with_ways_agree(seed: int) -> None:
     cpp_checks.check_way_codes(host(), seed, 3000)
 
 
 @pytest.mark.sampled("first")
 @pytest.mark.parametrize("first", range(0, 1600, 200))
-def test_random_programs_with_ways(first: int) -> None:
+def test_random_programs_with_ways_agree(first: int) -> None:
     cpp_checks.check_way_programs(host(), first, 200)
 
 
@@ -306,10 +308,14 @@ def test_needs_count_and_not_the_minor_version() -> None:
                 changed_bytes = bytearray(whole)
                 changed_bytes[3], changed_bytes[14] = minor, needs
                 image = with_checksum(bytes(changed_bytes))
-                ours = cpp_checks.refusal_of(partial(load_image, image, KIT))
-                theirs = cpp_checks.refusal_of(partial(host().run, image, KIT, Senses()))
+                python_result = cpp_checks.refusal_of(partial(load_image, image, KIT))
+                cpp_result = cpp_checks.refusal_of(partial(host().run, image, KIT, Senses()))
                 want = "OTHER_VERSION" if minor > ISA_MINOR else "" if needs else "UNKNOWN_OPCODE"
-                assert ours == theirs and want in ours and bool(want) == bool(ours), (text, minor)
+                assert (
+                    python_result == cpp_result
+                    and want in python_result
+                    and bool(want) == bool(python_result)
+                ), (text, minor)
 
 
 def test_long_images_get_the_same_verdict() -> None:
@@ -329,7 +335,7 @@ def test_long_images_get_the_same_verdict() -> None:
 
 @pytest.mark.sampled("name", keep=7)
 @pytest.mark.parametrize("name", OPERATIONS)
-def test_arithmetic(name: str) -> None:
+def test_arithmetic_agrees(name: str) -> None:
     """Two million operations in all."""
     check_arithmetic(host(), name, 100_000)
 

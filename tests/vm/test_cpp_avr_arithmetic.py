@@ -84,11 +84,11 @@ def checksum(block: Sequence[Operation]) -> int:
 
 def compare(seed: int, blocks: int = BLOCKS) -> None:
     """Assert that the chip calculates like Python, or name the operation."""
-    every = operations(seed, blocks)
+    all_operations = operations(seed, blocks)
     results = [int(line) for line in chip(seed, blocks)]
     assert len(results) == blocks
     for number, theirs in enumerate(results):
-        block = every[number * BLOCK : (number + 1) * BLOCK]
+        block = all_operations[number * BLOCK : (number + 1) * BLOCK]
         if checksum(block) == theirs:
             continue
         for operation, line in zip(block, chip(seed, blocks, number)[number:], strict=True):
@@ -100,20 +100,22 @@ def compare(seed: int, blocks: int = BLOCKS) -> None:
 
 
 def test_there_are_operations_of_every_kind() -> None:
-    every = operations(1, BLOCKS)
-    pairs = {(operation.a, operation.b) for operation in every}
-    assert len(pairs) > 0.95 * len(every)
-    assert {operation.a for operation in every} >= set(EDGES)
+    all_operations = operations(1, BLOCKS)
+    pairs = {(operation.a, operation.b) for operation in all_operations}
+    assert len(pairs) > 0.95 * len(all_operations)
+    assert {operation.a for operation in all_operations} >= set(EDGES)
     for name in OPERATIONS:
-        sizes = {abs(operation.a).bit_length() for operation in every if operation.name == name}
+        sizes = {
+            abs(operation.a).bit_length() for operation in all_operations if operation.name == name
+        }
         assert sizes >= set(range(32)), name
-    faults = {(operation.name, operation.result()[0]) for operation in every}
+    faults = {(operation.name, operation.result()[0]) for operation in all_operations}
     assert {("MUL", 1), ("DIV", 1), ("DIV", 2), ("MOD", 2), ("NEG", 1)} <= faults
 
 
 @needs_chip
 @pytest.mark.sampled("seed", keep=2)
 @pytest.mark.parametrize("seed", range(1, 5))
-def test_arithmetic(seed: int) -> None:
+def test_arithmetic_agrees(seed: int) -> None:
     """25,000 operations for each seed; a hundred thousand in all."""
     compare(seed)

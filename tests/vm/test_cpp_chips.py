@@ -85,27 +85,27 @@ def features_of(chip: str) -> int:
 
 def assert_same_on_chip(chip: str, image: bytes, kit: Kit, senses: Senses) -> str:
     """Assert that the chip says and does the same as Python; return the last line."""
-    want: Ran | str
+    expected: Ran | str
     actual: Ran | str
     try:
-        want = run_in_python(image, kit, senses, has=features_of(chip))
+        expected = run_in_python(image, kit, senses, has=features_of(chip))
     except (Refused, ImageRefused) as refusal:
-        want = repr(refusal)
+        expected = repr(refusal)
     try:
         actual = CHIPS[chip].run(image, kit, senses)
     except (Refused, ImageRefused) as refusal:
         actual = repr(refusal)
-    if isinstance(actual, str) or isinstance(want, str):
-        assert actual == want, image.hex(" ")
-        return str(want)
-    assert agrees(actual, want, senses.max_ms), f"{image.hex(' ')}\n{actual}\n{want}"
-    return want.trace.splitlines()[-1]
+    if isinstance(actual, str) or isinstance(expected, str):
+        assert actual == expected, image.hex(" ")
+        return str(expected)
+    assert agrees(actual, expected, senses.max_ms), f"{image.hex(' ')}\n{actual}\n{expected}"
+    return expected.trace.splitlines()[-1]
 
 
 @pytest.mark.sampled("case", "chip", keep=90)
 @each_chip
 @pytest.mark.parametrize("case", having("tiniscript", "robot"))
-def test_robot(case: Case, chip: str) -> None:
+def test_a_program_has_its_stated_trace(case: Case, chip: str) -> None:
     robot, senses = robot_and_senses(case)
     if needs_of(compile_case(case).code) & ~features_of(chip):
         with pytest.raises(ImageRefused, match="UNKNOWN_NEEDS"):
@@ -131,12 +131,12 @@ def test_disassembly_runs_or_is_refused(case: Case, chip: str) -> None:
 @one_chip
 @each_chip
 @pytest.mark.parametrize("seed", range(4))
-def test_random_programs(chip: str, seed: int) -> None:
+def test_random_programs_agree(chip: str, seed: int) -> None:
     for number in range(100):
         rng = random.Random(seed * 1000 + number)
         oracle_kit, kit = KITS[number % 2]
         image = compile_text(programs.program(rng, oracle_kit), kit).image
-        if len(image) <= CHIPS[chip].most_bytes:
+        if len(image) <= CHIPS[chip].max_bytes:
             readings = programs.senses(rng, oracle_kit)
             assert_same_on_chip(chip, image, kit, Senses(readings, 3000, 2000, number + 1))
 
@@ -144,7 +144,7 @@ def test_random_programs(chip: str, seed: int) -> None:
 @pytest.mark.sampled("seed")
 @some_chips(avr.UNO)
 @pytest.mark.parametrize("seed", range(4))
-def test_some_random_codes(chip: str, seed: int) -> None:
+def test_some_random_codes_agree(chip: str, seed: int) -> None:
     endings = set()
     kit = KITS[seed % 2][1]
     for number, code in enumerate(random_codes(seed, 8000)):
@@ -163,10 +163,10 @@ def test_code_changed_after_verification_ends_in_bad_code(chip: str) -> None:
     endings = set()
     for code, caught_at in unverified_code(len(kit.readings)):
         if code not in LENIENT:
-            want = "DONE" if caught_at is None else "BAD_CODE"
+            expected = "DONE" if caught_at is None else "BAD_CODE"
             answer = avr.answer(chip, b"U" + run_request(code, kit, senses))
-            assert parse_run(answer).trace.split()[-1] == want, f"{code.hex()}: {answer}"
-            endings.add(want)
+            assert parse_run(answer).trace.split()[-1] == expected, f"{code.hex()}: {answer}"
+            endings.add(expected)
     assert endings == {"DONE", "BAD_CODE"}
 
 
@@ -175,8 +175,8 @@ def test_loop_counts_may_exceed_65535(chip: str) -> None:
     """The test uses a nested loop and a long body: a counter has 24 bits, in registers and in
     memory."""
     kit = KITS[0][1]
-    far = f"IF(X < 0); {'Y = Y + 1; ' * 130} ENDIF; Y = X;"
-    for body in ("LOOP(1); Y = X; END_LOOP;", far):
+    far_jump = f"IF(X < 0); {'Y = Y + 1; ' * 130} ENDIF; Y = X;"
+    for body in ("LOOP(1); Y = X; END_LOOP;", far_jump):
         text = f"X = 0; Y = 0; LOOP(70000); X = X + 1; {body} END_LOOP; SHOW(Y)"
         image = compile_text(text, kit).image
         assert_same_on_chip(chip, image, kit, Senses())
@@ -207,9 +207,9 @@ def test_a_robot_that_is_not_ready_is_polled_again(chip: str) -> None:
     )
     image = image_for(code, kit)
     readings = {"DISTANCE": [1000, 2500, -3000]}
-    want = run_in_python(image, kit, Senses(readings)).trace
+    expected = run_in_python(image, kit, Senses(readings)).trace
     for not_ready in (2, 3):
-        assert avr.run_on(avr.UNO, image, kit, Senses(readings), not_ready).trace == want
+        assert avr.run_on(avr.UNO, image, kit, Senses(readings), not_ready).trace == expected
 
 
 @pytest.mark.sampled("chip", "seed")
@@ -224,14 +224,14 @@ def test_verdicts_on_random_codes_agree(chip: str, seed: int) -> None:
 
 @one_chip
 @each_emulated
-def test_programs_with_tasks(chip: str) -> None:
+def test_programs_with_tasks_agree(chip: str) -> None:
     cpp_checks.check_task_codes(start_emulator(chip), 4, 2000)
     cpp_checks.check_task_programs(start_emulator(chip), 2000, 100)
 
 
 @pytest.mark.sampled("chip")
 @some_chips(avr.UNO, avr.MEGA, avr.PORTABLE_CHIP)
-def test_programs_with_tasks_on_an_avr(chip: str) -> None:
+def test_programs_with_tasks_on_an_avr_agree(chip: str) -> None:
     for number, (image, senses) in enumerate(cpp_checks.some_task_programs(3000, 60)):
         assert_same_on_chip(chip, image, cpp_checks.KIT, senses)
         run = avr.run_on(chip, image, cpp_checks.KIT, senses, 2 + number % 3)
@@ -244,7 +244,7 @@ def test_programs_with_tasks_on_an_avr(chip: str) -> None:
 def test_assembly_and_its_cpp_twin_agree(chip: str, first: int) -> None:
     """On one chip, instruction by instruction: turns, moves and the inner loop exist twice."""
     for number, (image, senses) in enumerate(cpp_checks.some_task_programs(first, 100)):
-        not_ready, pace = (0, 2, 3)[number % 3], Pace(every_ms=(1, 8, 37, 2)[number % 4])
+        not_ready, pace = (0, 2, 3)[number % 3], Pace(call_interval_ms=(1, 8, 37, 2)[number % 4])
         begin_ms = (0, 2**31 - 100, 2**32 - 100)[number // 3 % 3]
         of_assembly, of_twin = (
             avr.run_on(chip_name, image, cpp_checks.KIT, senses, not_ready, pace, begin_ms)
@@ -255,12 +255,12 @@ def test_assembly_and_its_cpp_twin_agree(chip: str, first: int) -> None:
 
 @some_chips(avr.UNO, avr.MEGA, avr.PORTABLE_CHIP)
 @pytest.mark.parametrize("name", avr_tasks.PROGRAMS)
-def test_hard_programs_with_tasks(chip: str, name: str) -> None:
+def test_hard_programs_with_tasks_agree(chip: str, name: str) -> None:
     program = avr_tasks.PROGRAMS[name]
     image = compile_text(program.text, cpp_checks.KIT).image
     for not_ready, late_ms, begin_ms, max_ms in program.runs:
         senses = Senses(program.readings, max_ms)
-        pace = Pace(every_ms=late_ms + 1)
+        pace = Pace(call_interval_ms=late_ms + 1)
         run = avr.run_on(chip, image, cpp_checks.KIT, senses, not_ready, pace, begin_ms)
         assert run.trace == cpp_checks.slow_run(image, senses, not_ready, late_ms), run.trace
 
@@ -271,9 +271,9 @@ def test_calls_of_a_task_use_up_the_budget(chip: str) -> None:
     calls = "D;" * 130
     text = f"A = 0;DEF D;A = A + 1;END_DEF;TASK;LOOP(2);{calls}END_LOOP;SHOW(A);END_TASK"
     image = compile_text(text, cpp_checks.KIT).image
-    for most, want in ((100, ("0 LIMIT\n", 100)), (150, ("1 SHOW 260\n1 DONE\n", 261))):
-        run = avr.run_on(chip, image, cpp_checks.KIT, Senses(max_steps=most))
-        assert (run.trace, run.steps) == want
+    for max_steps, expected in ((100, ("0 LIMIT\n", 100)), (150, ("1 SHOW 260\n1 DONE\n", 261))):
+        run = avr.run_on(chip, image, cpp_checks.KIT, Senses(max_steps=max_steps))
+        assert (run.trace, run.steps) == expected
 
 
 @pytest.mark.sampled("chip")
@@ -283,23 +283,23 @@ def test_late_tasks_beyond_byte_256_run(chip: str) -> None:
         cpp_checks.some_task_programs(0, 40, cpp_checks.FAR_JUMP)
     ):
         late_ms = (0, 7, 36)[number % 3]
-        pace = Pace(every_ms=late_ms + 1)
+        pace = Pace(call_interval_ms=late_ms + 1)
         run = avr.run_on(chip, image, cpp_checks.KIT, senses, pace=pace, begin_ms=2**32 - 100)
         assert run.trace == cpp_checks.slow_run(image, senses, 0, late_ms), run.trace
 
 
 @one_chip
 @each_emulated
-def test_programs_with_ways(chip: str) -> None:
+def test_programs_with_ways_agree(chip: str) -> None:
     cpp_checks.check_way_codes(start_emulator(chip), 5, 1500)
     cpp_checks.check_way_programs(start_emulator(chip), 2000, 100)
 
 
 @pytest.mark.sampled("chip")
 @some_chips(avr.UNO, avr.MEGA, avr.PORTABLE_CHIP)
-def test_programs_with_ways_on_an_avr(chip: str) -> None:
+def test_programs_with_ways_on_an_avr_agree(chip: str) -> None:
     for image, kit, senses in cpp_checks.some_way_programs(3000, 60):
-        if len(image) <= CHIPS[chip].most_bytes:
+        if len(image) <= CHIPS[chip].max_bytes:
             assert_same_on_chip(chip, image, kit, senses)
 
 
@@ -313,5 +313,5 @@ def test_images_get_the_same_verdict(chip: str) -> None:
 @one_chip
 @each_emulated
 @pytest.mark.parametrize("name", cpp_checks.OPERATIONS)
-def test_arithmetic(chip: str, name: str) -> None:
+def test_arithmetic_agrees(chip: str, name: str) -> None:
     cpp_checks.check_arithmetic(start_emulator(chip), name, 10_000)

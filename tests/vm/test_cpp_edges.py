@@ -22,10 +22,10 @@ def show(number: int) -> bytes:
 
 def test_many_defs_compile() -> None:
     for count in range(20):
-        for calls in range(12):
+        for call_count in range(12):
             end = simple("RETURN")
             one = jump("DEF", False, len(end)) + end
-            code = one * count + jump("CALL", False, 3) * (calls if count else 0)
+            code = one * count + jump("CALL", False, 3) * (call_count if count else 0)
             compare_verdicts(host(), [code], 3, 2)
 
 
@@ -148,12 +148,14 @@ def test_an_instruction_of_one_byte_contains_its_operand() -> None:
 
 def test_a_program_may_run_for_24_days() -> None:
     """TIME is too large for a number after 24 days, and stays so: the clock of 32 bits wraps."""
-    most = simple("PUSH32") + (2**31 - 1).to_bytes(4, "little") + simple("WAIT")
+    longest_wait = simple("PUSH32") + (2**31 - 1).to_bytes(4, "little") + simple("WAIT")
     time = simple("TIME") + simple("SHOW")
     senses = Senses(max_ms=2**31 + 1000, max_steps=100)
-    ending = compare_runs(host(), most + time + simple("WAIT8") + b"\x01" + time, WIDE_KIT, senses)
+    ending = compare_runs(
+        host(), longest_wait + time + simple("WAIT8") + b"\x01" + time, WIDE_KIT, senses
+    )
     assert ending == "OVERFLOW", ending
-    for code in (most * 2 + simple("WAIT8") + b"\x78", most * 5):
+    for code in (longest_wait * 2 + simple("WAIT8") + b"\x78", longest_wait * 5):
         image = image_for(code + time, WIDE_KIT)
         run = host().run(image, WIDE_KIT, senses._replace(max_ms=2**32 - 1))
         assert run.trace.splitlines()[-1].endswith(" FAULT OVERFLOW"), run.trace
@@ -162,13 +164,13 @@ def test_a_program_may_run_for_24_days() -> None:
 def test_code_changed_after_verification_ends_in_bad_code() -> None:
     """Code that changed after it was verified ends in BAD_CODE, and not too early."""
     # A robot may report more sensors than a machine remembers.
-    for many in (3, MOST_DEVICES - 1, MOST_DEVICES, MOST_DEVICES + 1, 2 * MOST_DEVICES):
-        kit = kit_with_sensors(many)
+    for device_count in (3, MOST_DEVICES - 1, MOST_DEVICES, MOST_DEVICES + 1, 2 * MOST_DEVICES):
+        kit = kit_with_sensors(device_count)
         for code, caught_at in unverified_code(min(len(kit.readings), MOST_DEVICES)):
             run = host().run_unverified(code, kit, Senses(max_ms=100, max_steps=100))
             ending = run.trace.splitlines()[-1].split()[-1]
-            wanted_text = "DONE" if caught_at is None else "BAD_CODE"
-            assert ending == wanted_text, f"{code.hex(' ')}: {ending}, not {wanted_text}"
+            expected_text = "DONE" if caught_at is None else "BAD_CODE"
+            assert ending == expected_text, f"{code.hex(' ')}: {ending}, not {expected_text}"
             assert caught_at in (None, run.offset), (
                 f"{code.hex(' ')}: at {run.offset}, not {caught_at}"
             )

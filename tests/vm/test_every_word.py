@@ -148,8 +148,8 @@ def uses_of(word: Word) -> list[str]:
 
 def calls_of(word: Word) -> list[str]:
     uses = [word.example, word.text]
-    for what in [f"20 {UNIT_OF[word.text]}"] if word.role.is_move else []:
-        uses.append(f"{word.text}({what}, 80)")
+    for distance in [f"20 {UNIT_OF[word.text]}"] if word.role.is_move else []:
+        uses.append(f"{word.text}({distance}, 80)")
     if word.role.has_duration:
         forever = ", ".join(["FOREVER", *(argument.sample for argument in word.arguments[1:])])
         uses.append(f"{word.text}({forever})")
@@ -197,21 +197,21 @@ def test_every_word_is_a_program_somewhere() -> None:
 # -- arguments ------------------------------------------------------------------------------------
 
 
-def deep(value: str, values: int) -> str:
+def deep(value: str, value_count: int) -> str:
     """Return a sum that keeps so many values on the stack."""
-    return f"+({value}".join([value, *[""] * (values - 1)]) + ")" * (values - 1)
+    return f"+({value}".join([value, *[""] * (value_count - 1)]) + ")" * (value_count - 1)
 
 
 def edges(argument: Argument) -> Iterator[str]:
     """Yield allowed and forbidden values of an argument."""
-    for values in range(STACK_VALUES - 2, STACK_VALUES + 2):
+    for value_count in range(STACK_VALUES - 2, STACK_VALUES + 2):
         for value in ("V", "1"):
             is_question = argument in (
                 CONDITION,
                 *WORDS["WHILE"].arguments,
                 *WORDS["WHEN"].arguments,
             )
-            yield f"0 < {deep(value, values - 1)}" if is_question else deep(value, values)
+            yield f"0 < {deep(value, value_count - 1)}" if is_question else deep(value, value_count)
     for edge in (argument.low, argument.high):
         yield from (as_text(value) for value in (edge - 1, edge, edge + 1))
     yield from ("TRUE", "V", LONG_NAME, "DISTANCE", "TOUCH", "V / 0", "-V", "FOREVER", "", "V, V")
@@ -238,8 +238,8 @@ def test_every_argument_works_at_its_limits(word: Word) -> None:
     answers = set()
     for place, argument in enumerate(word.arguments):
         for edge in edges(argument):
-            values = ", ".join([*samples[:place], edge, *samples[place + 1 :]])
-            call = program_around(word).format(f"{word.text}({values})")
+            value_count = ", ".join([*samples[:place], edge, *samples[place + 1 :]])
+            call = program_around(word).format(f"{word.text}({value_count})")
             for text in (call, f"{call} {UNTIL_CLAUSE}") if word.role.is_instruction else (call,):
                 answers.add(check(f"V = 1;{LONG_NAME} = 2;{text}"))
     assert answers == {True, False}

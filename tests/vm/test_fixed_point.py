@@ -75,15 +75,15 @@ def outcome(function: Callable[[], int]) -> int | str:
 @pytest.mark.parametrize("name", OPERATIONS)
 def test_agrees_with_decimal(name: str) -> None:
     """All pairs of edges, and 20,000 random pairs of every size: more than 10^5 in all."""
-    ours, theirs = OPERATIONS[name]
+    operation, decimal_operation = OPERATIONS[name]
     rng = random.Random(f"arithmetic {name}")
     pairs = [(a, b) for a in EDGES for b in EDGES]
     for _ in range(20_000):
         a, b = (rng.randint(-(2**bits), 2**bits - 1) for bits in rng.choices(range(1, 32), k=2))
         pairs.append((a, rng.randrange(-12_000, 12_000) if name == "ROUND" else b))
     for a, b in pairs:
-        expected = outcome(lambda a=a, b=b: milli(theirs(units(a), units(b))))  # type: ignore[misc]
-        assert outcome(lambda a=a, b=b: ours(a, b)) == expected, (a, name, b)  # type: ignore[misc]
+        expected = outcome(lambda a=a, b=b: milli(decimal_operation(units(a), units(b))))  # type: ignore[misc]
+        assert outcome(lambda a=a, b=b: operation(a, b)) == expected, (a, name, b)  # type: ignore[misc]
 
 
 @pytest.mark.parametrize("value", EDGES)

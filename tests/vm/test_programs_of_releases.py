@@ -95,10 +95,10 @@ def write_release_file() -> str:
 
 @pytest.mark.parametrize("version", versions())
 def test_released_programs_still_compile_and_do_the_same(version: str) -> None:
-    olds = [old for old in released_programs(version) if not names_a_newer_word(old.text)]
-    assert len(olds) > (300 if version == FIRST_VERSION else 0)
+    old_programs = [old for old in released_programs(version) if not names_a_newer_word(old.text)]
+    assert len(old_programs) > (300 if version == FIRST_VERSION else 0)
     changed_traces = []
-    for old in olds:
+    for old in old_programs:
         try:
             trace = trace_of(old)
         except ProgramError as error:
@@ -120,9 +120,9 @@ def test_a_newer_word_of_the_kit_gives_way_with_a_warning() -> None:
 
 
 def test_use_of_a_newer_word_as_a_name_is_reported_with_its_version() -> None:
-    olds = [old for old in released_programs() if names_a_newer_word(old.text)]
-    assert len(olds) >= 5
-    for old in olds:
+    old_programs = [old for old in released_programs() if names_a_newer_word(old.text)]
+    assert len(old_programs) >= 5
+    for old in old_programs:
         (message,) = check(old.text, old.robot)
         assert (
             message.code == "TS105" and "has been a word of TiniScript since 0.3" in message.message

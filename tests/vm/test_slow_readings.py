@@ -149,7 +149,7 @@ def check_program(seed: int, machines: Sequence[Run]) -> None:
     pace = random_pace(rng)
     want = run(
         text, PAPER_KIT, readings, MAX_MS, seed=seed + 1, is_slow=pace.is_slow,
-        every_ms=pace.every_ms,
+        call_interval_ms=pace.call_interval_ms,
     )  # fmt: skip
     image = compile_text(text, KIT).image
     for machine in machines:
@@ -159,13 +159,13 @@ def check_program(seed: int, machines: Sequence[Run]) -> None:
 
 @pytest.mark.sampled("first", keep=2)
 @pytest.mark.parametrize("first", range(0, 800, 100))
-def test_random_programs_with_slow_readings(first: int) -> None:
+def test_random_programs_with_slow_readings_agree(first: int) -> None:
     for seed in range(first, first + 100):
         check_program(seed, (run_python,))
 
 
 @each_machine
-def test_random_programs_on_each_machine(machine: Run) -> None:
+def test_random_programs_agree_on_each_machine(machine: Run) -> None:
     for seed in range(800, 840):
         check_program(seed, (machine,))
 

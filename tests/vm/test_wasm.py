@@ -103,16 +103,20 @@ def test_the_module_imports_only_the_robot() -> None:
 # -- the command --------------------------------------------------------------------------------
 
 
-def both(tsc: Tsc, *arguments: str) -> tuple[int, str, str]:
+def run_both(tsc: Tsc, *arguments: str) -> tuple[int, str, str]:
     """Assert that both machines print the same and end in the same way; return their trace."""
-    ours = tsc("run", *arguments)
-    theirs = tsc("run", "--machine", "cpp", *arguments)
-    assert (theirs.code, theirs.out, theirs.err) == (ours.code, ours.out, ours.err)
-    return theirs.code, theirs.out, theirs.err
+    python_result = tsc("run", *arguments)
+    cpp_result = tsc("run", "--machine", "cpp", *arguments)
+    assert (cpp_result.code, cpp_result.out, cpp_result.err) == (
+        python_result.code,
+        python_result.out,
+        python_result.err,
+    )
+    return cpp_result.code, cpp_result.out, cpp_result.err
 
 
 def test_a_fault_has_its_line(tsc: Tsc) -> None:
-    code, out, err = both(tsc, "-e", "F(1, 50)\nA = 0\nSHOW(5 / A)", "--lang", "es")
+    code, out, err = run_both(tsc, "-e", "F(1, 50)\nA = 0\nSHOW(5 / A)", "--lang", "es")
     assert code == 1
     assert out.endswith("1000 FAULT DIVIDE_BY_ZERO\n")
     assert "SHOW(5 / A)" in err
@@ -125,7 +129,7 @@ def test_a_fault_has_its_line(tsc: Tsc) -> None:
 )
 def test_an_overflowed_time_stays_overflowed(waits: str, at_ms: int, tsc: Tsc) -> None:
     """A time that is too large for a number stays too large: a clock of 32 bits wraps around."""
-    _, out, _ = both(tsc, "-e", f"SI|{waits};SHOW(TIME)", "--max-time", "9999999")
+    _, out, _ = run_both(tsc, "-e", f"SI|{waits};SHOW(TIME)", "--max-time", "9999999")
     assert out == f"{at_ms} FAULT OVERFLOW\n"
 
 
@@ -193,25 +197,28 @@ def test_functions_are_called_alike_with_and_without_wasmtime_internals(
 def test_refused_images_raise_an_error() -> None:
     from tiniscript.vm.wasm import WasmImage
 
-    good = compile_text("SHOW(DISTANCE)", KIT).image
-    broken_images = [good[:length] for length in range(len(good))]
-    broken_images += [good[:k] + bytes([good[k] ^ 255]) + good[k + 1 :] for k in range(len(good))]
-    broken_images += [good + b"?", good + bytes(60_000), good + bytes(100_000)]
+    good_image = compile_text("SHOW(DISTANCE)", KIT).image
+    broken_images = [good_image[:length] for length in range(len(good_image))]
+    broken_images += [
+        good_image[:k] + bytes([good_image[k] ^ 255]) + good_image[k + 1 :]
+        for k in range(len(good_image))
+    ]
+    broken_images += [good_image + b"?", good_image + bytes(60_000), good_image + bytes(100_000)]
     for data in broken_images:
-        with pytest.raises(ImageRefused) as ours:
+        with pytest.raises(ImageRefused) as python_result:
             unpack(data)
-        with pytest.raises(ImageRefused) as theirs:
+        with pytest.raises(ImageRefused) as cpp_result:
             WasmImage(data, KIT)
-        assert theirs.value.name == ours.value.name
+        assert cpp_result.value.name == python_result.value.name
     changed_kit = KIT._replace(sensors=tuple(sensor._replace(unit="x") for sensor in KIT.sensors))
     with pytest.raises(ImageRefused, match="OTHER_KIT"):
-        WasmImage(good, changed_kit)
+        WasmImage(good_image, changed_kit)
 
 
 def test_differing_verdicts_are_an_internal_error() -> None:
-    bad = Image("SI", 0, b"\xff", 0, (ISA_MAJOR, ISA_MINOR))
+    unverified_image = Image("SI", 0, b"\xff", 0, (ISA_MAJOR, ISA_MINOR))
     with pytest.raises(AssertionError, match="refuses what Python accepts: UNKNOWN_OPCODE"):
-        run._cpp_machine(bad, robots.load("tinibot"))
+        run._cpp_machine(unverified_image, robots.load("tinibot"))
 
 
 # -- the machine --------------------------------------------------------------------------------

@@ -37,17 +37,17 @@ def run_with_limit(code: str) -> str:
     return completed.stdout
 
 
-@pytest.mark.sampled("what", keep=2)
-@pytest.mark.parametrize("what", [
+@pytest.mark.sampled("statement", keep=2)
+@pytest.mark.parametrize("statement", [
     "loaded()",
     "loaded().machine(image, None)",
     "with closing(loaded()) as one: one.machine(image, None)",
     "try: loaded(image[:-1])\n    except ImageRefused: pass",
     "one = loaded(); one.myself = one; one.close()",
 ])  # fmt: skip
-def test_two_thousand_successive_machines_take_bounded_memory(what: str) -> None:
+def test_two_thousand_successive_machines_take_bounded_memory(statement: str) -> None:
     """However one ends: forgotten, refused, or closed while something still knows it."""
-    code = f"{MACHINES}\nfor k in range(2000):\n    {what}\nprint(k + 1)"
+    code = f"{MACHINES}\nfor k in range(2000):\n    {statement}\nprint(k + 1)"
     assert run_with_limit(code) == "2000\n"
 
 

@@ -149,8 +149,8 @@ def test_both_languages_have_the_same_rows(robot: Robot) -> None:
     ]
     tables = [(block.rows, other.rows) for block, other in zip(english, spanish, strict=True)
               if block.kind == "ticks"]  # fmt: skip
-    for ours, theirs in tables:
-        for row, other in zip(ours, theirs, strict=True):
+    for english_rows, spanish_rows in tables:
+        for row, other in zip(english_rows, spanish_rows, strict=True):
             assert re.findall(r"\d+ k?Ω", " ".join(row)) == re.findall(r"\d+ k?Ω", " ".join(other))
     (wires, same), (rails, _) = tables
     assert [row[1] for row in wires[1:]] == [row[1] for row in same[1:]]
@@ -218,8 +218,13 @@ def texts_of(svg: str) -> list[str]:
 def test_wires_never_overlap_each_other_or_parts(robot: Robot) -> None:
     layout = layout_of(plan_of(robot, "en"))
     assert layout.board[2] == BOARD_WIDTH
-    for box, near in combinations(_solid(layout), 2):
-        is_apart = box[2] <= near[0] or near[2] <= box[0] or box[3] <= near[1] or near[3] <= box[1]
+    for box, other_box in combinations(_solid(layout), 2):
+        is_apart = (
+            box[2] <= other_box[0]
+            or other_box[2] <= box[0]
+            or box[3] <= other_box[1]
+            or other_box[3] <= box[1]
+        )
         assert is_apart, "parts have room"
     lines = [
         (route.wire.number, *start, *end)

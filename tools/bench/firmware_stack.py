@@ -83,7 +83,9 @@ def set_obstacles(uno: Uno, robot: Robot) -> None:
     """Set obstacles for its sensors."""
     for device in robot.board.sensors:
         if device.driver == "hc_sr04":
-            uno.sonar(pin(robot, device.pins["trigger"]), pin(robot, device.pins["echo"]), 40)
+            uno.set_sonar_distance(
+                pin(robot, device.pins["trigger"]), pin(robot, device.pins["echo"]), 40
+            )
 
 
 def pin(robot: Robot, number: int) -> str:

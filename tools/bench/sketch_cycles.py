@@ -46,7 +46,7 @@ def per_iteration(firmware: Path, work: Workload) -> float:
     with Uno(firmware, baud=ROBOT.board.baud, tells_sleep=False) as board:
         wired_uno = connect(board, ROBOT)
         if work.readings:
-            board.analog(SENSOR_PIN, work.readings[0])
+            board.set_analog(SENSOR_PIN, work.readings[0])
         with_loop, shown_values = _cycles(wired_uno, text_of(work))
         check("the sketch", work, shown_values)
         without_loop, _ = _cycles(wired_uno, text_of(work, has_loop=False))

@@ -68,7 +68,7 @@ def look_at_wall(seed: int, is_trusting: bool) -> WrongReadings:
     board = board_of(LOOK_PROGRAM, is_trusting)
     trigger, echo = sonar_pins(board.robot)
     board.watch(trigger)
-    board.echoes(trigger, echo, [cm * US_PER_CM for cm in heard_distances])
+    board.set_echoes(trigger, echo, [cm * US_PER_CM for cm in heard_distances])
     ping_times_ms = ping_starts_ms(board.run_for(START_MS + 2900), trigger)
     readings = driven_ms(board, 1)
     wrong_count = 0
@@ -90,7 +90,7 @@ def lateness_ms(distance_at: Callable[[float], float], phase: float, is_trusting
     board.watch(trigger)
     phase_ms = phase * PING_INTERVAL_MS
     distances_cm = [distance_at(number * PING_INTERVAL_MS + phase_ms) for number in range(60)]
-    board.echoes(trigger, echo, [cm * US_PER_CM for cm in distances_cm])
+    board.set_echoes(trigger, echo, [cm * US_PER_CM for cm in distances_cm])
     first_ping_ms = ping_starts_ms(board.run_for(START_MS + 1500), trigger)[0]
     near_ms = next(ms for ms in range(1500) if distance_at(ms + phase_ms) < NEAR_CM)
     known_ms = next(ms for ms in driven_ms(board, 1) if board.motors(ms)[0] == NEAR_PWM)

@@ -76,7 +76,7 @@ class BusyRobot:
                 self._trigger, self._sonar = (
                     pin(robot, device.pins[name]) for name in ("trigger", "echo")
                 )
-                self.chip.sonar(self._trigger, self._sonar, None)
+                self.chip.set_sonar_distance(self._trigger, self._sonar, None)
         discs = robot.board.discs
         self._discs = [pin(robot, number) for number in discs.pins.values()] if discs else []
         self._level = False  # level of the discs' outputs

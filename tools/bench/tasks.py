@@ -121,10 +121,10 @@ def jitter_ms(firmware: Path, task_count: int) -> float:
         times_ms: list[float] = []
         for number in range(LOOK_COUNT):
             board.run_ms(LOOK_INTERVAL_MS * number / LOOK_COUNT + 0.3)
-            board.analog(SENSOR_PIN, 900)
+            board.set_analog(SENSOR_PIN, 900)
             pin_change = board.run_until("left", "pwm", 3 * LOOK_INTERVAL_MS)
             times_ms.append(pin_change.cycle / CYCLES_PER_MS)
-            board.analog(SENSOR_PIN, 100)
+            board.set_analog(SENSOR_PIN, 100)
             board.run_ms(120)
         first_ms = times_ms[0]
         lateness_ms = [

@@ -138,8 +138,8 @@ def fetch(wheel: Path, folder: Path, system: System, python: str, extras: str) -
     _pip([*arguments, f"{wheel}{extras}"], system.markers(python))
 
 
-def _pip(arguments: list[str], environment: dict[str, str]) -> None:
-    command = [sys.executable, "-c", _PIP, json.dumps(environment)]
+def _pip(arguments: list[str], marker_environment: dict[str, str]) -> None:
+    command = [sys.executable, "-c", _PIP, json.dumps(marker_environment)]
     command += [arguments[0], "--disable-pip-version-check", *arguments[1:]]
     process = subprocess.run(command, capture_output=True, text=True)
     if process.returncode:

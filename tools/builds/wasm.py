@@ -72,7 +72,7 @@ MODULES = (MACHINE, ROBOT, ROBOT_MEGA, ROBOT_ESP32, ROBOT_DISCS)
 def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description="Make the WebAssembly modules from the C++.")
     parser.add_argument("--check", action="store_true", help="only say whether one is stale")
-    only_check: bool = parser.parse_args(arguments).check
+    is_check_only: bool = parser.parse_args(arguments).check
     if unavailable_reason():
         sys.exit(unavailable_reason())
     exit_code = 0
@@ -81,7 +81,7 @@ def main(arguments: list[str] | None = None) -> int:
         module_data = build(ROOT / SOURCES, module)
         if path.exists() and path.read_bytes() == module_data:
             continue
-        if only_check:
+        if is_check_only:
             print(f"{module.path} is stale. Run: {COMMAND}", file=sys.stderr)
             exit_code = 1
         else:

@@ -41,7 +41,7 @@ ROBOT_FOLDER = ROOT / "compiler" / "tiniscript" / "robots"
 def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description="Write the generated files.")
     parser.add_argument("--check", action="store_true", help="only say which ones are stale")
-    only_check: bool = parser.parse_args(arguments).check
+    is_check_only: bool = parser.parse_args(arguments).check
     stale_count = 0
     for path, make in OUTPUTS:
         name = path.relative_to(ROOT).as_posix()
@@ -54,12 +54,12 @@ def main(arguments: list[str] | None = None) -> int:
         if path.exists() and path.read_bytes() == text.encode():
             continue
         stale_count += 1
-        if only_check:
+        if is_check_only:
             print(f"{name} is stale. Run: {COMMAND}", file=sys.stderr)
         else:
             path.write_bytes(text.encode())
             print(f"wrote {name}")
-    return 1 if only_check and stale_count else 0
+    return 1 if is_check_only and stale_count else 0
 
 
 def shipped_robots() -> str:

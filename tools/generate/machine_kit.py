@@ -77,15 +77,16 @@ class Run(NamedTuple):
     slow_readings: Mapping[str, tuple[int, int, int]] = {}
     text: str = ""
 
-    def call_every(self, every_ms: int) -> Run:
-        name = f"{self.name} (called every {every_ms} ms)"
-        return self._replace(name=name, schedule=(0, (every_ms,)))
+    def call_every(self, call_interval_ms: int) -> Run:
+        name = f"{self.name} (called every {call_interval_ms} ms)"
+        return self._replace(name=name, schedule=(0, (call_interval_ms,)))
 
     def at_pace(self, pace: Pace) -> Run:
         """Return this run at a pace, with some late readings."""
         slow_readings = dict.fromkeys(pace.slow, (pace.period_ms, pace.from_ms, pace.to_ms))
-        name = f"{self.name} ({' and '.join(slow_readings)} late, called every {pace.every_ms} ms)"
-        return self._replace(name=name, schedule=(0, (pace.every_ms,)), slow_readings=slow_readings)
+        interval_ms = pace.call_interval_ms
+        name = f"{self.name} ({' and '.join(slow_readings)} late, called every {interval_ms} ms)"
+        return self._replace(name=name, schedule=(0, (interval_ms,)), slow_readings=slow_readings)
 
     @property
     def needs(self) -> int:
@@ -142,7 +143,7 @@ def lines_of(kit: Kit) -> list[str]:
 def case_of(run: Run, kit: int, answer: list[str]) -> dict[str, object]:
     """Return a case as the file has it."""
     names = [device.name for device in run.kit.readings]
-    start_ms, every_ms = run.schedule
+    start_ms, call_intervals_ms = run.schedule
     return {
         "name": run.name,
         "kit": kit,
@@ -151,7 +152,7 @@ def case_of(run: Run, kit: int, answer: list[str]) -> dict[str, object]:
         **({"slow": _by_number(names, run.slow_readings)} if run.slow_readings else {}),
         "seed": run.senses.seed,
         "begin": start_ms,
-        "every": list(every_ms),
+        "every": list(call_intervals_ms),
         "until": run.senses.max_ms,
         **({"needs": run.needs} if run.needs else {}),
         "answer": answer,
@@ -192,8 +193,8 @@ def answer_of(
         return [f"REFUSED {error.name} {error.offset}"]
     except ImageRefused as error:
         return [f"REFUSED {error.name}"]
-    start_ms, every_ms = run.schedule
-    intervals_ms = chain(every_ms, repeat(every_ms[-1]))
+    start_ms, call_intervals_ms = run.schedule
+    intervals_ms = chain(call_intervals_ms, repeat(call_intervals_ms[-1]))
     robot = SlowRobot(run)
     machine = machine_of(code, robot, len(run.kit.readings), run.senses.seed, start_ms)
     call_count = 0  # calls at the same time
@@ -241,7 +242,7 @@ def documented_runs() -> Iterator[Run]:
         )
         yield run.call_every(LATE_CALL_MS)
         if run.needs & TASKS:
-            yield from (run.call_every(every_ms) for every_ms in OFTEN_MS)
+            yield from (run.call_every(interval_ms) for interval_ms in OFTEN_MS)
         if senses.readings:
             yield run.at_pace(Pace(7, tuple(senses.readings), 50, 0, 30))
 
@@ -315,7 +316,10 @@ def late_runs() -> Iterator[Run]:
     ):  # fmt: skip
         senses = Senses({"LIGHT_R": [9000, 0, 9000, 0], "DISTANCE": [5000]}, 300)
         run = Run(f"late: {name}", TINIBOT_KIT, compile_image(text), senses, text=text)
-        yield from (run.at_pace(pace._replace(every_ms=every_ms)) for every_ms in (1, *OFTEN_MS))
+        yield from (
+            run.at_pace(pace._replace(call_interval_ms=interval_ms))
+            for interval_ms in (1, *OFTEN_MS)
+        )
 
 
 def device_runs() -> Iterator[Run]:
@@ -469,7 +473,7 @@ def task_program_runs() -> Iterator[Run]:
         text, readings = task_program(rng)
         run = task_run(f"tasks: {seed}", text, readings)
         yield run
-        yield from (run.call_every(every_ms) for every_ms in OFTEN_MS)
+        yield from (run.call_every(interval_ms) for interval_ms in OFTEN_MS)
         yield run._replace(
             name=f"{run.name} (called every 7 ms, time wraps around)", schedule=SELDOM_SCHEDULE
         )
@@ -477,7 +481,8 @@ def task_program_runs() -> Iterator[Run]:
         run = task_run(f"tasks: rivals {seed}", *rival_program(rng))
         yield run
         yield from (
-            run.at_pace(random_pace(rng)._replace(every_ms=every_ms)) for every_ms in OFTEN_MS
+            run.at_pace(random_pace(rng)._replace(call_interval_ms=interval_ms))
+            for interval_ms in OFTEN_MS
         )
 
 

@@ -140,7 +140,7 @@ def find_missing_tool(parts: Sequence[str]) -> str:
     return ""
 
 
-def _clones(scratch: Path, url: str, whole_stick: bool) -> list[Clone]:
+def _clones(scratch: Path, url: str, needs_whole_stick: bool) -> list[Clone]:
     """Clone the commit into clean folders with the release's times, permissions and address."""
     clones = []
     for number, clone_folder in enumerate(CLONE_FOLDERS, 1):
@@ -157,7 +157,7 @@ def _clones(scratch: Path, url: str, whole_stick: bool) -> list[Clone]:
             project_file.write_text(facts.with_address(text, url), encoding="utf-8")
             _commit(root)
         clones.append(Clone(root, parts, facts.version(root), facts.address(root),
-                           facts.epoch(ROOT), number, whole_stick))  # fmt: skip
+                           facts.epoch(ROOT), number, needs_whole_stick))  # fmt: skip
     return clones
 
 

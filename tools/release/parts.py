@@ -35,7 +35,7 @@ class Clone(NamedTuple):
     address: str
     epoch: int  # s since 1970: the time of its commit
     seed: int  # seed of Python's set order
-    whole_stick: bool
+    needs_whole_stick: bool
 
     def environment(self) -> dict[str, str]:
         """Return the variables of a process that builds."""
@@ -132,11 +132,11 @@ def make_site(clone: Clone) -> list[Path]:
 def make_stick(clone: Clone) -> list[Path]:
     folder = clone.parts / "stick"
     arguments = ["--wheel", str(next(clone.parts.glob("*.whl")))]
-    if not clone.whole_stick:
+    if not clone.needs_whole_stick:
         python_version = f"{sys.version_info[0]}.{sys.version_info[1]}"
         arguments += ["--system", "linux", "--python", python_version, "--no-installer"]
     # 1: something could not be had, which the stick's README.txt then names
-    good_codes = (0, 1) if clone.whole_stick else (0,)
+    good_codes = (0, 1) if clone.needs_whole_stick else (0,)
     clone.python("-m", "tools.builds.usb_stick", str(folder), *arguments, good_codes=good_codes)
     path = pack_folder(folder, clone.file_of("stick"), clone.epoch)
     shutil.rmtree(folder)

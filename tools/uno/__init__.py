@@ -203,17 +203,17 @@ class Uno:
         )
         self._send_lines(time_words + f"pin {self.pins.number(pin)} none")
 
-    def analog(self, pin: str, count: int) -> None:
+    def set_analog(self, pin: str, count: int) -> None:
         """Put as much voltage to an analog pin as is read as `count`, 0 to 1023."""
         assert 0 <= count <= 1023, count
         self._send_lines(f"analog {self.pins.number(pin)} {count}")
 
-    def supply(self, volts: float) -> None:
+    def set_supply(self, volts: float) -> None:
         """Set a voltage other than 5 V, which only affects the analog converter."""
         assert 2 <= volts <= 6, volts
         self._send_lines(f"supply {round(volts * 1000)}")
 
-    def sonar(
+    def set_sonar_distance(
         self, trigger: str, echo: str, distance_cm: float | None, at_cycle: int | None = None
     ) -> None:
         """Put an HC-SR04 at two pins, or move its obstacle; None: no obstacle."""
@@ -223,17 +223,17 @@ class Uno:
     # -- its serial port ----------------------------------------------------------------------
 
     def send(
-        self, data: bytes, at_cycle: int | None = None, *, stop_bits_fail: bool = False
+        self, data: bytes, at_cycle: int | None = None, *, has_bad_stop_bits: bool = False
     ) -> None:
         """Send bytes to the chip one after the other; the first start bit at a cycle, or now."""
         if data:
             self._send_lines(
-                _at_cycle(at_cycle) + f"send{'_bad' if stop_bits_fail else ''} {data.hex()}"
+                _at_cycle(at_cycle) + f"send{'_bad' if has_bad_stop_bits else ''} {data.hex()}"
             )
 
-    def hold(self, level: bool, bits: int, at_cycle: int | None = None) -> None:
+    def hold(self, is_high: bool, bits: int, at_cycle: int | None = None) -> None:
         """Hold the wire low (a break) or idle for so many bits, after the bytes sent."""
-        self._send_lines(_at_cycle(at_cycle) + f"hold {'high' if level else 'low'} {bits}")
+        self._send_lines(_at_cycle(at_cycle) + f"hold {'high' if is_high else 'low'} {bits}")
 
     @property
     def sent_bytes(self) -> list[Byte]:

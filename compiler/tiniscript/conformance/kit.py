@@ -19,8 +19,9 @@ MACHINE_VERSION = 5  # version of the file's form; raised when readers or machin
 class MachineCase(NamedTuple):
     """One run. `devices` are the kit's lines, in the form that is hashed, and its speed;
     `readings_by_sensor` are thousandths by sensor number; times are milliseconds. A slow sensor has
-    a period, and ranges in which it is not ready. `every_ms` has an entry for each wait; the last
-    one applies to all further waits. A machine may lack the case's `needs`, which are as in images.
+    a period, and ranges in which it is not ready. `call_intervals_ms` has an entry for each wait;
+    the last one applies to all further waits. A machine may lack the case's `needs`, which are as
+    in images.
     """
 
     name: str
@@ -29,7 +30,7 @@ class MachineCase(NamedTuple):
     readings_by_sensor: dict[int, tuple[int, ...]]
     seed: int
     begin_ms: int
-    every_ms: tuple[int, ...]
+    call_intervals_ms: tuple[int, ...]
     until_ms: int
     needs: int
     answer: tuple[str, ...]
@@ -51,7 +52,7 @@ class MachineCase(NamedTuple):
             *slow_rows,
             f"seed {self.seed}",
             f"begin {self.begin_ms}",
-            f"every {' '.join(map(str, self.every_ms))}",
+            f"every {' '.join(map(str, self.call_intervals_ms))}",
             f"until {self.until_ms}",
             f"image {self.image.hex()}".rstrip(),
             "run",

@@ -127,14 +127,14 @@ class Client:
 
     # -- requests: all raise RobotError where the connection has ended ----------------------------
 
-    def meet(self, board: str = "", is_patient: Callable[[], bool] = lambda: True) -> DeviceInfo:
+    def meet(self, board: str = "", should_retry: Callable[[], bool] = lambda: True) -> DeviceInfo:
         """Send HELLO until the robot answers. Raises RobotError if none does.
 
-        `board` replaces the board of the profile. While `is_patient` a stop that comes first does
+        `board` replaces the board of the profile. If `should_retry()`, a stop that comes first does
         not end the search.
         """
         reply = self.hello(board)
-        while reply.status == CANCELLED and is_patient():
+        while reply.status == CANCELLED and should_retry():
             reply = self.wait(self.search())
         if reply.status or self.connection.robot is None:
             raise self.error_for_reply(reply)

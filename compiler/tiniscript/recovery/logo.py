@@ -26,7 +26,7 @@ _TOKEN = re.compile(
 _TAUGHT_WORD = re.compile(r"\s*(?P<to>[^\W\d]\w*)[ \t]+(?P<name>[^\W\d]\w*)[ \t]*")
 _LONE_WORD = re.compile(r"\s*([^\W\d]\w*)[ \t]*")
 _LEAST_STEPS = 5  # fewer are rather seconds
-_MOST_NESTED_LOOPS = 4  # loops
+_MAX_LOOP_DEPTH = 4  # loops
 _MOST_INSTRUCTIONS = 12  # instructions that are read as one
 
 
@@ -151,7 +151,7 @@ class _Reader:
             if token.kind != "word" or not number_tokens or number_tokens[0].kind != "number":
                 return [], k
             word = self._meaning_of(token.text)
-            if word == "LOOP" and depth < _MOST_NESTED_LOOPS and self._text_at(k + 2) == "[":
+            if word == "LOOP" and depth < _MAX_LOOP_DEPTH and self._text_at(k + 2) == "[":
                 self.is_bracketed = True
                 inner_instructions, end = self.instructions(k + 3, depth + 1)
                 if not inner_instructions or self._text_at(end) != "]":

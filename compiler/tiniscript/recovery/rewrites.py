@@ -45,7 +45,7 @@ _EDGE_PATTERNS = {
 }
 # A part of a pattern without a word edge: `\$`, `[^;]`.
 _EDGE = re.compile(r"\\.|\[\^?\]?(?:\\.|[^]\\])*\]|[$^]")
-_MOST_NESTED_BRACKETS = 3  # brackets in a body: `F(RANDOM(1, (X + 1)), 60)`
+_MAX_BRACKET_DEPTH = 3  # brackets in a body: `F(RANDOM(1, (X + 1)), 60)`
 _NUMBER_LABEL = re.compile(r"@(?:dec|cat|own|ms|mmss|xn|same)\b|(?<![\w@])\d")
 _BEFORE_VALUE = COMPARISONS | frozenset("(,+-*/%")
 _HEADER_OF = {"FOREVER": "LOOP", "ELSEIF": "IF"}
@@ -201,7 +201,7 @@ def _atom(atom: str) -> tuple[str, frozenset[str]]:
 def _closing_pattern(labels: Sequence[str]) -> str:
     """Return the pattern of a token of these labels, or of brackets that such tokens are in."""
     body = _token_pattern(labels)
-    for _ in range(_MOST_NESTED_BRACKETS):
+    for _ in range(_MAX_BRACKET_DEPTH):
         body = (
             rf"(?:{_token_pattern(labels)}|{_token_pattern(['s('])}{body}*{_token_pattern(['s)'])})"
         )

@@ -156,7 +156,7 @@ class HostedRobot:
         """Say hello to the robot; return whether it has answered."""
         connection = client.connection
         try:
-            robot = client.meet(is_patient=lambda: not self.was_left)
+            robot = client.meet(should_retry=lambda: not self.was_left)
         except TiniScriptError as failure:
             if connection.has_ended:
                 raise

@@ -30,8 +30,8 @@ uint32_t next_call_ms(uint32_t wake_ms) {
   if (static_cast<int32_t>(wake_ms - now_ms) < 0) wake_ms = now_ms;
   if (robot.was_slow && wake_ms == now_ms) wake_ms++;
   robot.was_slow = false;
-  const uint32_t every_ms = robot.pace.every_ms;
-  return (wake_ms + every_ms - 1) / every_ms * every_ms;
+  const uint32_t call_interval_ms = robot.pace.call_interval_ms;
+  return (wake_ms + call_interval_ms - 1) / call_interval_ms * call_interval_ms;
 }
 
 // Adds the last line of an answer.
@@ -59,7 +59,7 @@ uint32_t run(const Image& image, const Limits& limits) {
   machine.start(image.code, image.code_length, readings, robot.sensor_count, limits.seed,
                 limits.begin_ms);
   robot.has_tasks = machine.has_tasks();
-  const bool is_at_once = robot.pace.every_ms == 1 && robot.pace.slow_sensors == 0;
+  const bool is_at_once = robot.pace.call_interval_ms == 1 && robot.pace.slow_sensors == 0;
   uint32_t steps = 0;
   uint32_t steps_left = limits.max_steps;  // before the clock must move
   for (;;) {
@@ -142,7 +142,7 @@ void answer_run(Request request, bool is_verified, const Pace& pace) {
 
 void answer_run_at_pace(Request request) {
   Pace pace;
-  pace.every_ms = request.u32();
+  pace.call_interval_ms = request.u32();
   pace.slow_sensors = request.u32();
   pace.period_ms = request.u32();
   pace.from_ms = request.u32();

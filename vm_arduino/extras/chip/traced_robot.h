@@ -20,7 +20,7 @@ constexpr uint8_t kMostActuators = 255;
 // When a machine is called: at multiples of so many milliseconds. Some sensors, bits of their
 // numbers, are slow: not ready from one time to another in each period.
 struct Pace {
-  uint32_t every_ms;
+  uint32_t call_interval_ms;
   uint32_t slow_sensors;
   uint32_t period_ms;
   uint32_t from_ms;

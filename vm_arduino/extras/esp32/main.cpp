@@ -52,7 +52,7 @@ void look() {
 }
 
 void pass(uint32_t us) {
-  pass_us(us);
+  advance_us(us);
   if (chip.has_restarted) {
     say("RESTART");
     chip.has_restarted = false;

@@ -245,7 +245,7 @@ void expect(bool condition, const char* message) {
 
 void expect_free(const char* message) { expect(in_critical == 0, message); }
 
-void pass_us(uint64_t us) {
+void advance_us(uint64_t us) {
   const uint64_t end_us = chip.now_us + us;
   for (uint64_t next_us = next_event(); next_us <= end_us; next_us = next_event()) {
     if (next_us > chip.now_us) chip.now_us = next_us;

@@ -93,7 +93,7 @@ void expect(bool condition, const char* message);
 void expect_free(const char* message);  // of a critical section
 
 // Lets time pass; what is due meanwhile happens at its microsecond.
-void pass_us(uint64_t us);
+void advance_us(uint64_t us);
 
 // What the pin has: 0 to 255, PWM as its share.
 uint8_t output_of(uint8_t pin);

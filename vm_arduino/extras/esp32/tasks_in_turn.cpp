@@ -100,7 +100,7 @@ void vTaskDelay(const TickType_t xTicksToDelay) {
   if (current == &main_loop) {
     chip.sleep_count++;
     chip.slept_us += xTicksToDelay * 1000;
-    return pass_us(uint64_t{xTicksToDelay} * 1000);
+    return advance_us(uint64_t{xTicksToDelay} * 1000);
   }
   current->due_us = chip.now_us + uint64_t{xTicksToDelay} * 1000;
   switch_to(&main_loop);

@@ -211,7 +211,7 @@ int main(int, char** words) {
     // many in a row: the broker's task takes one while the next one comes
     if (turn == 0 || (turn % 4000 >= 2000 && turn % 4000 < 2200)) use_broker();
     loop();
-    pass_us(50);
+    advance_us(50);
     chip.unsent_bytes = 0;
     chip.sent_bytes.clear();
   }

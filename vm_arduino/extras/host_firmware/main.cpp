@@ -41,7 +41,7 @@ struct Wheel {
   double total_edges = 0;  // edges in all
   bool is_held = false;
 
-  void pass_millisecond(int8_t percent) {
+  void advance_millisecond(int8_t percent) {
     speed += (percent * kEdgesPerMs / 100 - speed) / kLagMs;
     if (is_held) speed = 0;
     net_edges += speed;
@@ -183,8 +183,8 @@ void answer_begin(RequestReader* request, Writer*) {
 // Returns what the robot sends.
 std::string pass(uint32_t now_ms, uint16_t ticks, const uint8_t* data, size_t length) {
   table.now_ms = now_ms;
-  table.wheels[0].pass_millisecond(table.left);
-  table.wheels[1].pass_millisecond(table.right);
+  table.wheels[0].advance_millisecond(table.left);
+  table.wheels[1].advance_millisecond(table.right);
   std::string sent_bytes;
   size_t index = 0;
   for (uint16_t k = 0; k < ticks || index < length; k++) {

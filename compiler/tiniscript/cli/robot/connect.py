@@ -165,13 +165,13 @@ class Connection(Client):
             self.simulator.close()
 
     def meet(
-        self, board: str = "", is_patient: Callable[[], bool] | None = None
+        self, board: str = "", should_retry: Callable[[], bool] | None = None
     ) -> DeviceInfo:  # fmt: skip
         """Send HELLO until the robot answers, and remember it. Raises CommandError if none does."""
         self._is_meeting = True
         self.wait_notice.begin()
         with self._show_wait():
-            device_info = super().meet(board, is_patient or (lambda: self.starts_nothing))
+            device_info = super().meet(board, should_retry or (lambda: self.starts_nothing))
         self._is_meeting = False
         self.wait_notice.end_wait()
         remember_profile(self.options, self.profile, device_info.kit)
