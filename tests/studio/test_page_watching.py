@@ -191,7 +191,8 @@ def test_a_crash_is_heard_reported_with_its_place_and_shaken(heard_page: Page) -
     assert page.evaluate(noted_text) == [1, 1, 1]
     assert count(page, "ffd84d") > 20  # the star where it touches the box
     first_message, *_, last_message = page.evaluate("window.told")
-    assert first_message.startswith("The robot has bumped into something. The robot is ")
+    bump_text = "The robot has bumped into something ahead of it."
+    assert first_message.startswith(f"{bump_text} The robot is ")
     assert last_message.startswith("Collisions: 1. The robot is ") and last_message.endswith(
         "to the right."
     )
