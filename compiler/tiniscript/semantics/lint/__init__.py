@@ -1,4 +1,4 @@
-"""The lint: warnings about programs that have no mistakes.
+"""The linter: warnings about programs that compile, but may not do what was meant.
 
 `TABLE` has all of them: the codes, where each is looked for, and what finds it there. Warnings that
 cannot be found in a checked program are in `FOUND_ELSEWHERE`.
