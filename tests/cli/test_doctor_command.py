@@ -228,7 +228,7 @@ def test_the_doctor_asks_before_it_opens_a_cable(
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
     result = tsc("doctor", "--port", cable.port)
     assert (result.code, bool(cable.received)) == (code, code == 0)
-    assert f"open {cable.port}. That restarts a board" in result.err
+    assert f"open {cable.port}. If the board is connected by a cable" in result.err
 
 
 # -- the report ---------------------------------------------------------------------------------

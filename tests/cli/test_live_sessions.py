@@ -333,7 +333,7 @@ def test_a_line_does_the_same_whatever_came_before_it(
             is_stopped, robot.presses_after = robot.stop_count > stops_before, None
             has_failed, robot.failure = may_fail and robot.failure is None, None
             assert err or not has_failed
-            is_refused, is_forgotten = "room for" in err, "are lost" in err
+            is_refused, is_forgotten = "room for" in err, "are not kept" in err
             assert robot.room == NARROW or not (is_refused or is_forgotten)
             assert not (is_forgotten and is_faulty)
             if is_stopped:

@@ -114,7 +114,7 @@ def test_a_live_line_fits_a_sealed_frame(pty_robot: PtyRobot) -> None:
     result = on(pty_robot, "live", "-", data=f"{longest_line}\nSHOW(X)\n".encode())
     assert result.code == 0 and result.out.count("X 1\n") == 1
     assert claim_with_button(pty_robot).code == 0
-    on(pty_robot, "live", "-", data=longest_line.encode()).gives(0, "are lost", out="")
+    on(pty_robot, "live", "-", data=longest_line.encode()).gives(0, "are not kept", out="")
     on(pty_robot, "live", "SHOW(TIME * 1.234);" * 8).gives(1, "room for 42")
     result = on(pty_robot, "live", "SHOW(TIME * 1.234);" * 8, "--lang", "es")
     assert "42" in result.err

@@ -58,9 +58,9 @@ def test_a_hanging_main_loop_is_reset(hang: str, limit_ms: int, board: str, tmp_
     effect, and no other data is lost.
     """
     elf = build_hanging_firmware(tmp_path, hang, board)
-    kept_path = tmp_path / "eeprom"
+    eeprom_path = tmp_path / "eeprom"
     chip = "mega" if board == "mega" else "uno"
-    with Uno(elf, names=NAMES, board=chip, baud=BAUD, eeprom=kept_path) as uno:
+    with Uno(elf, names=NAMES, board=chip, baud=BAUD, eeprom=eeprom_path) as uno:
         uno.run_ms(300)
         wired_uno = computer(uno)
         assert wired_uno.complete(wired_uno.session.trim(PACED.data()))
@@ -87,7 +87,7 @@ def test_a_hanging_main_loop_is_reset(hang: str, limit_ms: int, board: str, tmp_
             uno.reset()
             uno.run_ms(300)
             assert hello_of(computer(uno, 8 + number)).reset != WATCHDOG
-    with Uno(elf, names=NAMES, board=chip, baud=BAUD, eeprom=kept_path) as restarted_robot:
+    with Uno(elf, names=NAMES, board=chip, baud=BAUD, eeprom=eeprom_path) as restarted_robot:
         restarted_robot.run_ms(300)
         wired_uno = computer(restarted_robot, 7)
         hello_reply = hello_of(wired_uno)

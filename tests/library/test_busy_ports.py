@@ -243,9 +243,9 @@ def test_attempts_to_reach_an_unshared_port_leave_nothing_open(
                 peer.sendall(data)
                 peer.shutdown(socket.SHUT_WR)
                 peer.settimeout(HANG_LIMIT_S)
-                ended.append(peer.recv(1000))
+                last_received.append(peer.recv(1000))
 
-        ended: list[bytes] = []
+        last_received: list[bytes] = []
         thread = Thread(target=serve, daemon=True)
         thread.start()
         try:
@@ -254,4 +254,4 @@ def test_attempts_to_reach_an_unshared_port_leave_nothing_open(
         except RobotError as failure:
             assert failure.reason == reason
         thread.join(HANG_LIMIT_S)
-        assert ended == [b""], "it is connected still"
+        assert last_received == [b""], "it is connected still"

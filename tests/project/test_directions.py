@@ -155,9 +155,9 @@ def test_a_virtual_robot_without_a_terminal_loads_no_drawing() -> None:
     assert not {"rich", "rich.console"} & modules
 
 
-def test_no_interruptible_wait_is_in_python() -> None:
+def test_waits_use_no_threading_primitive_written_in_python() -> None:
     """Waits use a Bell: an interrupted Condition keeps its lock, or releases it twice."""
-    written_in_python = {"Barrier", "BoundedSemaphore", "Condition", "Event", "Semaphore", "Timer"}
+    python_primitives = {"Barrier", "BoundedSemaphore", "Condition", "Event", "Semaphore", "Timer"}
     for stage in ("base", "cli", "doctor", "library", "link", "virtual"):
         for path in (PACKAGE / stage).rglob("*.py"):
             imported_modules = {
@@ -166,4 +166,4 @@ def test_no_interruptible_wait_is_in_python() -> None:
                 if isinstance(node, ast.ImportFrom) and node.module == "threading"
                 for alias in node.names
             }
-            assert not imported_modules & written_in_python, path
+            assert not imported_modules & python_primitives, path

@@ -76,8 +76,8 @@ def check_same_meaning_everywhere(wrong_text: str) -> None:
     is_open = ends(meant_alone.text) > ends(
         wrong_text
     )  # later lines may belong to the block that it begins
-    is_free = not TOP_LEVEL_WORD.search(meant_alone.text.upper())
-    for place in (*PLACES_ON_A_LINE, *(PLACES_IN_A_BLOCK if is_free else ())):
+    may_stand_in_a_block = not TOP_LEVEL_WORD.search(meant_alone.text.upper())
+    for place in (*PLACES_ON_A_LINE, *(PLACES_IN_A_BLOCK if may_stand_in_a_block else ())):
         candidate = find_meant_program(place.format(wrong_text))
         same = place.format(meant_alone.text)
         if is_open and not place.endswith("{}"):

@@ -175,8 +175,8 @@ class Backlog:
 
     def _drop_event(self) -> None:
         self._missed_count += 1
-        for number, (_, event) in enumerate(self._events):
+        for index, (_, event) in enumerate(self._events):
             if event.name in DROPPABLE_EVENTS:
-                del self._events[number]
+                del self._events[index]
                 return
         self._events.popleft()

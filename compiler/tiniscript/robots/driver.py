@@ -135,11 +135,11 @@ class HeaderPart:
         return f"      if (!analog_read({channel}, value)) return false;"
 
     @staticmethod
-    def part_of_range(device: Device, start_value: int, end_value: int) -> str:
+    def map_to_range(device: Device, start_value: int, end_value: int) -> str:
         """Return `value` as the part of `start_value` to `end_value` that it is of an actuator's
         range."""
         low, high = device.low // ONE, device.high // ONE
-        return f"part_of_range(value, {low}, {high}, {start_value}, {end_value})"
+        return f"map_to_range(value, {low}, {high}, {start_value}, {end_value})"
 
 
 class DriverPlan:

@@ -33,6 +33,6 @@ int32_t in_limits(int32_t value, int32_t low, int32_t high);
 
 // Maps a setting in thousandths, from `low` to `high` (whole numbers), to the range from `first` to
 // `last`.
-uint16_t part_of_range(int32_t value, int32_t low, int32_t high, uint16_t first, uint16_t last);
+uint16_t map_to_range(int32_t value, int32_t low, int32_t high, uint16_t first, uint16_t last);
 
 }  // namespace tiniscript

@@ -13,7 +13,7 @@ int32_t in_limits(int32_t value, int32_t low, int32_t high) {
   return value < low ? low : value > high ? high : value;
 }
 
-uint16_t part_of_range(int32_t value, int32_t low, int32_t high, uint16_t first, uint16_t last) {
+uint16_t map_to_range(int32_t value, int32_t low, int32_t high, uint16_t first, uint16_t last) {
   const int32_t position = in_limits(whole(value), low, high) - low;
   // Ranges above 2^15 are exact enough without their lowest bits.
   uint32_t range = static_cast<uint32_t>(high - low);

@@ -35,7 +35,7 @@ UNPLAYED_OPTIONS = ("sensor", "seed", "max_time", "robot", "record", *UNRECORDED
 LONGEST_RUN_MS = 60_000
 
 
-def refuse(options: Namespace, names: tuple[str, ...], key: str) -> None:
+def refuse_options(options: Namespace, names: tuple[str, ...], key: str) -> None:
     """Raise CommandError with the sentence `key` where one of these options is there."""
     for name in names:
         if getattr(options, name) not in (None, False, []):
@@ -57,7 +57,7 @@ def source_text(program_input: Input) -> str:
 
 def record(program_input: Input, options: Namespace, language: str) -> int:
     """Run a program on the virtual robot, print its trace, and write the file of the run."""
-    refuse(options, UNRECORDED_OPTIONS, "record_only")
+    refuse_options(options, UNRECORDED_OPTIONS, "record_only")
     source = source_text(program_input)
     robot = inputs.robot_for(program_input, options, language)
     require_known_robot(robot)
@@ -100,7 +100,7 @@ def record(program_input: Input, options: Namespace, language: str) -> int:
 
 def play(program_input: Input, options: Namespace, language: str) -> int:
     """Play the file of a run again; return the exit code: 1 where it is another run then."""
-    refuse(options, UNPLAYED_OPTIONS, "play_only")
+    refuse_options(options, UNPLAYED_OPTIONS, "play_only")
     run = _read(program_input)
     if options.world is not None and run.recording.is_virtual:
         raise CommandError(2, "play_only", option="--world")

@@ -19,7 +19,7 @@ class PwmActuator(ActuatorDriver):
         begin_line = f"begin_pwm(Pwm{pwm});" if part.is_esp32 else f"begin_output({pin}, false);"
         part.begin_lines.append(begin_line)
         part.off_lines.append(f"disconnect(Pwm{pwm});  // {device.name}")
-        share = part.part_of_range(device, 0, 255)
+        share = part.map_to_range(device, 0, 255)
         return [f"      connect(Pwm{pwm}, {share});", "      return;"]
 
     def sketch_lines(

@@ -45,7 +45,7 @@ class Servo(ActuatorDriver):
 
     def firmware_lines(self, part: HeaderPart, device: Device, wiring: Wiring) -> list[str]:
         part.servo_pins.append(wiring.pins["pin"])
-        pulse = part.part_of_range(device, wiring.settings["low_us"], wiring.settings["high_us"])
+        pulse = part.map_to_range(device, wiring.settings["low_us"], wiring.settings["high_us"])
         number = len(part.servo_pins) - 1
         condition = "if (is_stalled) " if wiring.settings[AT_STOP] == HOLD_CHOICE else ""
         part.off_lines.append(f"{condition}servo_set({number}, 0, 0);  // {device.name}")

@@ -6,7 +6,7 @@ import * as Blockly from 'blockly/core';
 import { clearWorkspace, drawForm, formOf, isLoose, formOfBlock, keepPlaces, knownPlaces, makeRoom, piecesIn, showForm } from './form.js';
 import { updateCalls, labelCalls } from './own_words.js';
 import { setActuators } from './places.js';
-import { Checker, defineBlocks, setNarrow, setNewPieces, setRobot } from './shapes.js';
+import { LenientConnectionChecker, defineBlocks, setNarrow, setNewPieces, setRobot } from './shapes.js';
 import { setTonePlayer } from './fields.js';
 import { insertBlock } from './insert.js';
 import { renderPicture } from './picture.js';
@@ -96,7 +96,7 @@ export class Blocks {
     this.#container = container;
     this.#listener = listener;
     this.#level = level;
-    Blockly.registry.register(Blockly.registry.Type.CONNECTION_CHECKER, 'tiniscript', Checker, true);
+    Blockly.registry.register(Blockly.registry.Type.CONNECTION_CHECKER, 'tiniscript', LenientConnectionChecker, true);
     Blockly.registry.register(Blockly.registry.Type.CONNECTION_PREVIEWER, 'tiniscript', Previewer, true);
     Object.assign(Blockly.config, { snapRadius: SNAP_RADIUS, connectingSnapRadius: STAY_RADIUS });
     this.#removeBlocklyActions();

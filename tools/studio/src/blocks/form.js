@@ -6,7 +6,7 @@ import * as Blockly from 'blockly/core';
 import { WAY_UNIT } from './fields.js';
 import { findEarlyDefs, inTextOrder } from './hats.js';
 import { impliedWordOf, wordOnBlock } from './places.js';
-import { Checker } from './shapes.js';
+import { LenientConnectionChecker } from './shapes.js';
 import { runAtOnce, runInSlices } from './slices.js';
 import { KINDS, pieceOf } from '../page/words.js';
 
@@ -364,11 +364,11 @@ export function clearWorkspace(workspace) {
 /** What is done is not reported, and nothing of it is refused. @param {() => void} change */
 function withoutEvents(change) {
   Blockly.Events.disable();
-  Checker.isLenient = true;
+  LenientConnectionChecker.isLenient = true;
   try {
     change();
   } finally {
-    Checker.isLenient = false;
+    LenientConnectionChecker.isLenient = false;
     Blockly.Events.enable();
   }
 }

@@ -43,12 +43,12 @@ export function devicesOfRole(role) {
 }
 
 /** Lets what a text says stand anywhere: the compiler says what does not fit. */
-export class Checker extends Blockly.ConnectionChecker {
+export class LenientConnectionChecker extends Blockly.ConnectionChecker {
   static isLenient = false;
 
   /** @param {Blockly.Connection} a @param {Blockly.Connection} b */
   doTypeChecks(a, b) {
-    return Checker.isLenient || super.doTypeChecks(a, b);
+    return LenientConnectionChecker.isLenient || super.doTypeChecks(a, b);
   }
 }
 

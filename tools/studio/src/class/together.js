@@ -55,7 +55,7 @@ const DECISION_LIMIT_MS = 2000; // for what was done before an undo
  */
 
 /** A change that somebody else has made, or the layout. @type {import('@codemirror/state').AnnotationType<boolean>} */
-const broughtAnnotation = Annotation.define();
+const remoteAnnotation = Annotation.define();
 /** @type {import('@codemirror/state').StateEffectType<{line: number, mate: Mate}[]>} */
 const setMatesEffect = StateEffect.define();
 
@@ -218,7 +218,7 @@ export class SharedEditor {
   /** @param {import('@codemirror/view').ViewUpdate} update */
   #onUpdate(update) {
     if (this.#isOver) return;
-    const ownTransactions = update.transactions.filter((transaction) => transaction.docChanged && !transaction.annotation(broughtAnnotation));
+    const ownTransactions = update.transactions.filter((transaction) => transaction.docChanged && !transaction.annotation(remoteAnnotation));
     const line = update.state.doc.lineAt(update.state.selection.main.head).number;
     if (ownTransactions.length) {
       this.#typedChanges = this.#typedChanges?.compose(update.changes) ?? null;
@@ -292,7 +292,7 @@ export class SharedEditor {
     this.#view.dispatch({
       changes: mappedChanges,
       ...(isAtLineStart && { selection: selection.map(mappedChanges, 1) }), // else it is mapped so anyway; saying it would end a composition
-      annotations: [broughtAnnotation.of(true), Transaction.addToHistory.of(false)],
+      annotations: [remoteAnnotation.of(true), Transaction.addToHistory.of(false)],
     });
     if (answer.count > changeCountBefore) this.#editor.setUndoHandler((direction) => this.#undoOrRedo(direction));
     this.#showMates();

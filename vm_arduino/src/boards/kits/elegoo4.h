@@ -138,7 +138,7 @@ inline bool read_sensor(uint8_t number, int32_t* value) {
 inline void set_actuator(uint8_t number, int32_t value) {
   switch (number) {
     case 0:  // NECK
-      servo_set(0, part_of_range(value, 0, 180, 500, 2400), 0);
+      servo_set(0, map_to_range(value, 0, 180, 500, 2400), 0);
       return;
   }
 }
