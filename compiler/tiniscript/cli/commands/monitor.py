@@ -6,6 +6,7 @@ import sys
 from argparse import Namespace
 from time import monotonic
 
+from tiniscript.cli import streams
 from tiniscript.cli.options import whole_number
 from tiniscript.cli.paths import ROWS_HEADER
 from tiniscript.cli.robot.connect import Connection, connect
@@ -41,6 +42,7 @@ def run(options: Namespace, language: str) -> int:
                 printer = EventPrinter(language, options.json, has_times=True, add_row=add_row)
                 _watch(connection, printer, seconds)
     except KeyboardInterrupt:  # the usual way to end it
+        streams.drop_unread_output()
         print(file=sys.stderr)
     finally:
         if rows is not None:

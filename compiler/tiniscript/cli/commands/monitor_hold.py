@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from argparse import Namespace
 
+from tiniscript.cli import streams
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.robot.bookkeeping import Bookkeeping
@@ -31,6 +32,7 @@ def run(options: Namespace, language: str) -> int:
             connection.meet()
             _Log(connection, options.json).print_events()
     except KeyboardInterrupt:  # the usual way to end it
+        streams.drop_unread_output()
         print(file=sys.stderr)
     return 0
 
