@@ -12,6 +12,7 @@ from argparse import Namespace
 from array import array
 from contextlib import suppress
 from pathlib import Path
+from time import sleep
 from typing import Any
 
 import pytest
@@ -240,22 +241,31 @@ def test_a_robot_that_is_busy_for_too_long_is_not_lost(
 
 TALKING_PROGRAM = "SI|LOOP(FOREVER);M(40, 40);SHOW(12345);W(0.01);END_LOOP"
 PIPE_BYTES = 4096
+BUFFERED = {"PYTHONUNBUFFERED": ""}  # as users have it: without a buffer no last flush waits
 
 
 def start_unread_command(*words: str, data: bytes = b"") -> Command:
-    """Return a command whose pipe is full: it waits for the reader, or soon will."""
-    command = Command(*words, data=data)
+    """Return a command whose pipe is full."""
+    command = Command(*words, data=data, env=BUFFERED)
+    fill_pipe(command)
+    return command
+
+
+def fill_pipe(command: Command) -> None:
+    """Read no more of what a command prints, until it waits for the reader of a full pipe."""
     pipe = command.process.stdout
     assert pipe
     fcntl.fcntl(pipe, fcntl.F_SETPIPE_SZ, PIPE_BYTES)
+    counts = [0]
 
-    def count_waiting_bytes() -> int:
+    def is_stuck() -> bool:
         count = array("i", [0])
         fcntl.ioctl(pipe, termios.FIONREAD, count)
-        return count[0]
+        counts.append(count[0])
+        sleep(0.1)
+        return counts[-1] > PIPE_BYTES - 100 and counts[-3:] == 3 * counts[-1:]
 
-    until(lambda: count_waiting_bytes() > PIPE_BYTES - 100, "the pipe is full")
-    return command
+    until(is_stuck, "it waits")
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="only Linux says how large a pipe is")
@@ -289,6 +299,20 @@ def test_a_command_with_unread_output_ends_with_ctrl_c(pty_robot: PtyRobot, verb
     assert command.process.wait(HANG_LIMIT_S) in (0, 2)
     if "monitor" not in verb:
         pty_robot.until(lambda: not pty_robot.moves, "it stands")
+    assert "Traceback" not in command.wait_for_result().err
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="only Linux says how large a pipe is")
+@pytest.mark.parametrize("signal_number", [signal.SIGINT, signal.SIGTERM])
+def test_a_virtual_robot_with_unread_output_ends(signal_number: signal.Signals) -> None:
+    command = Command("robot", env=BUFFERED)
+    assert command.process.stdout
+    address = command.process.stdout.readline().decode().strip()
+    on_robot = ("upload", "-e", TALKING_PROGRAM, "--detach", "--port", address)
+    assert run_in_process(*on_robot).code == 0
+    fill_pipe(command)
+    command.signal(signal_number)
+    assert command.process.wait(HANG_LIMIT_S) == 0
     assert "Traceback" not in command.wait_for_result().err
 
 

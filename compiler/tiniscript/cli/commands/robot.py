@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from tiniscript.base.files import is_pipe
 from tiniscript.base.trace import Event
-from tiniscript.cli import inputs, outputs
+from tiniscript.cli import inputs, outputs, streams
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.options import decimal, name_bytes, whole_number
@@ -115,7 +115,7 @@ class _Stage:
                     if not self._handle_keys(keys.read_keys()):
                         break
         except KeyboardInterrupt:
-            pass
+            streams.drop_unread_output()
         finally:
             robot.switch_off()  # motors that still run belong to the output
             if self.screen is not None and self.picture is not None:
