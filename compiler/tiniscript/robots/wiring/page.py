@@ -6,7 +6,6 @@ sentences of `texts`; the code that writes it escapes it.
 
 from __future__ import annotations
 
-import re
 from typing import NamedTuple
 
 from tiniscript.robots.driver import BOARD_3V3, BOARD_5V, FIVE_VOLTS, GROUND, PULL_DOWN
@@ -128,9 +127,7 @@ class _Page:
                 parts_by_need.setdefault(part.shape.need_key, []).append(part)
         need_texts = [self.text("need_board", board=self.board_name)]
         for key, parts in parts_by_need.items():
-            need_text = self.text(key)
-            if not re.match(r"\d+ × ", need_text):  # the text may state how many parts there are
-                need_text = f"{len(parts)} × {need_text}"
+            need_text = f"{len(parts)} × {self.text(key)}"
             if any(part.is_device for part in parts):
                 need_text = self.text(
                     "for_part", need=need_text, parts=", ".join(p.title for p in parts)
