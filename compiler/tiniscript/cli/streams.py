@@ -86,7 +86,7 @@ def drop_unread_output() -> None:
     """Redirect outputs without a reader to the null device, so that an interrupted command neither
     writes to them nor waits.
 
-    A pipe whose reader is merely slow accepts the output within UNREAD_S.
+    A pipe whose reader is merely slow accepts the output within READER_TIMEOUT_S.
     """
     if sys.platform == "win32":
         return
