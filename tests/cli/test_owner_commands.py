@@ -81,7 +81,7 @@ def test_a_robot_claimed_by_another_computer_is_reported_with_the_next_step(
     become_another_computer(monkeypatch, tmp_path)
     assert claim_with_button(pty_robot).code == 0
     become_another_computer(monkeypatch, tmp_path, "settings")
-    for _ in range(7):  # more often than wrong keys are listened to
+    for _ in range(7):  # more times than wrong keys are accepted
         on(pty_robot, "doctor").gives(0, "claimed the robot again.", "10 s")
     assert "lo hizo suyo" in on(pty_robot, "doctor", "--identify", "--lang", "es").err
     assert [key.is_stale for key in KeyFile().all()] == [True]

@@ -310,7 +310,7 @@ def test_a_stale_key_is_tried_at_most_once_at_hello() -> None:
     assert session.robot
     teacher_session.stored_keys = [RobotKey(session.robot.id, KEY_OWNER, bytes([1] * 16), "")]
     table.claim_session(other_keys)
-    for nonce in range(10, 30):  # more often than it may be tried
+    for nonce in range(10, 30):  # more times than it may be tried
         assert owner_of(table, table.session(teacher_session, nonce=nonce)) == OWNED_BY_OTHER
         assert [key.is_stale for key in teacher_session.stored_keys] == [True]
     assert owner_of(table, table.session(other_keys, nonce=40)) == OWNED_BY_YOU

@@ -122,7 +122,7 @@ def test_a_stop_works_every_time(stop_kind: str) -> None:
         if stop_kind == "zeros"
         else b"\0" + encode_frame(Frame(BY_NAME["STOP"].number, 7, 0))
     )
-    for _ in range(300):  # more often than an 8-bit counter can count
+    for _ in range(300):  # more times than an 8-bit counter can count
         robot.push(2)
         assert actions_of(robot)[-1] == "MOTORS 80 80"
         robot.wait(20, stop)

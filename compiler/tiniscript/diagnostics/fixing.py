@@ -66,7 +66,7 @@ Check = Callable[[str], list[Diagnostic]]
 def repair_program(text: str, check: Check) -> RepairedProgram:
     """Return a program with its sure repairs. `check` finds the diagnostics of a text.
 
-    A long program takes long, and has many mistakes: it is not checked so often.
+    A long program takes long to check and has many mistakes, so it is checked fewer times.
     """
     checks_left = min(MOST_CHECKS, 20 + CHECKED_CHARACTERS // (len(text) + 1)) - 1
     diagnostics = check(text)

@@ -6,8 +6,8 @@ r"""The rows: each slip that the recovery reads, with an example that is a test.
 
 A pattern is tokens with spaces between: a word of the language or one that means it (`LOOP`), a
 part of a sentence of the lexicon (`then`), a sign, or a class. `A|B` are alternatives, `'|'` is a
-sign that would be one of the signs here, `?`, `*` and `+` stand after what may be missing or come
-more often. `^` is the beginning of an instruction: a line, or the text after `SI|`, a `;` or a
+sign that would be one of the signs here, `?`, `*` and `+` stand after what may be missing or be
+repeated. `^` is the beginning of an instruction: a line, or the text after `SI|`, a `;` or a
 brace; `$` is its end. A row of a whole line says `^^` and `$$`. `c=` captures, and `<part>` is a
 piece of PARTS. The cheapest reading is reported; 1 is usual.
 Classes: @num @word @val (a value with a name), of which an @amount is no yes or no by itself,
@@ -643,7 +643,7 @@ LOOP|count v=@usedname =|from 1 to|until n=@num do|:?
     | LOOP ( $n ) ; IF ( $c ) ; BREAK ; ENDIF | 1 | TS064 | offered
     | LOOP(3) UNTIL(DISTANCE < 10)⏎F(1, 40)⏎END_LOOP => LOOP(3);IF(DISTANCE < 10);BREAK;ENDIF⏎F(1,
     40)⏎END_LOOP
-# how often something is done, said behind it or before it: number
+# how many times something is done, written after it or before it: number
 ⟨^ b=@step *|X? n=@num times? $¦call b=@step n=@num¦^ b=@step n=X2|X3|X4|X5|X6 $⟩
     | LOOP ( ⟨$n¦$n¦@xn:n⟩ ) ; $b ; END_LOOP | 1 | TS062 | applied
     | DEF SALTO;F(0.2, 60);END_DEF⏎⟨SALTO*3¦CALL SALTO 3¦SALTO x3⟩ => DEF SALTO;F(0.2,
@@ -654,7 +654,7 @@ LOOP|count v=@usedname =|from 1 to|until n=@num do|:?
 ^ do|make? b=@start r=@any* n=@num times $
     | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | TS062 | offered
     | hacer F(1,50) 3 veces => LOOP(3);F(1, 50);END_LOOP
-# words behind a call, shown and not made: branch
+# words after a call, shown and not made: branch
 ^ a=S|STOP ( ⟨n=@num|@val seconds?¦n=@num u=@unit⟩ )|$
     | $a ; W ( ⟨$n¦@own:n:u⟩ ) | 1 | TS039 | offered
     | S(⟨2¦500 ms⟩) => S;W(⟨2¦0.5⟩)

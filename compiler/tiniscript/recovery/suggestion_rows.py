@@ -33,7 +33,7 @@ takes the place of the instruction, if somebody says so), `whole` (its fix stand
 `everywhere` (`right` is written in each place of a name), `again` (rows speak of it once more).
 
 Values are texts with gaps. A gap is a capture, or a function: of 1 and 2 in `suggestions`, of 3 in
-`usage`; a row with a gap that cannot be filled does not hold, unless `?` stands behind its name.
+`usage`; a row with a gap that cannot be filled does not hold, unless `?` follows its name.
 `?=` must be filled and is not told, `*=` are values that come together. `⟨less¦more⟩` makes a row
 of each, and a row goes on in lines that are indented, as in `rows`. Rows are sorted by their
 purpose; a heading names the laws of `rows` that the rows below it obey and no stranger's program
@@ -69,7 +69,7 @@ SUGGESTIONS = """
     | F(1, 80)⏎⟨GO TO START¦3. voltar ao 1⟩ => endless=LOOP(FOREVER);F(1, 80);END_LOOP
 # notes: branch, number, code
 ^ @none TSC @any* $ | TS073 | command={said}; words= | SI|F(1, 80)⏎tsc upload => command=tsc upload
-# how often, before what is repeated, and a loop behind it: number
+# how many times, before what is repeated, and a loop after it: number
 ^ @none 1|@one times :? $ | TS062 | found={words}; line={said} | 1 vez:⏎S => line=1 vez
 ^ @none n=@number times :? $ | TS062 | found={words}; fix=LOOP({n}) | 4 veces:⏎S => fix=LOOP(4)
 ^ @last repeat (? n=@num? )? times? $
@@ -147,9 +147,9 @@ SUGGESTIONS = """
 ^ @none w=@call @any* (|, s=@order ) $
     | TS051 | word={s}; example={example}
     | F(2, R) => example=F(2, 80)
-# words for nothing, and those that are no words behind it: number
+# words for nothing, followed by others that are no words: number
 ^ c=F|B CM|@in_cm $ | TS085 | fix={by_way} | F(20, 60) cm => fix=F(20 CM, 60)
-# how often: number, two
+# how many times: number, two
 ^ c=@more <lead> <often> <close> $
     | TS062 | found={text}; last={loop}; all={all}
     | F(1, 60); L(1, 60) x4 => last=LOOP(4);L(1, 60);END_LOOP
@@ -331,7 +331,7 @@ SUGGESTIONS = """
     | TS122 here | lamp={said}; switch={lamp?}; fix={lamp_⟨on¦off⟩?}
     | L(⟨ON¦OFF⟩) => lamp=L(⟨ON¦OFF⟩)
 ^ TS039 S|STOP ( @num ) $ | = offered | fix={first};W({number}) | F(50);S(1) => fix=S;W(1)
-# what is no value, in brackets or behind one: number, branch
+# what is no value, in brackets or after one: number, branch
 ^ TS017
     | TS049 offered | ?={unit}; fix={without_seconds}; found={here}
     | F(RANDOM(1, 3) sec, 50) => fix=F(RANDOM(1, 3), 50)
