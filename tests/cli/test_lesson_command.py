@@ -112,6 +112,27 @@ def test_json_is_a_list(tsc: Tsc, folder: Path) -> None:
     assert result == {"file": "-e", "verdict": "passed", "seed": None, "findings": []}
 
 
+def test_a_mark_is_the_same_whatever_was_marked_before(tsc: Tsc, tmp_path: Path) -> None:
+    programs = [
+        RIGHT_ANSWER, SHORT_ANSWER, WRONG_ANSWER, "SI|F(2.5, 80);SHOW(DISTANCE)",
+        "// robot: liner\nSI|F(2.5, 80)", "// robot: liner\nSI|F(2.5, 80);SHOW(LINE_L)",
+        "SI|F(2.5, 80);SHOW(LINE_L)", "", "SB|F(2.5, 80)",
+    ]  # fmt: skip
+
+    def marks_of(texts: list[str]) -> list[dict[str, object]]:
+        for number, text in enumerate(texts):
+            (tmp_path / f"{number}.ts").write_text(text, encoding="utf-8")
+        return [
+            {**row, "file": ""}
+            for row in json.loads(tsc("lesson", "check", "1", tmp_path, "--json").out)
+        ]
+
+    marks = [marks_of([program])[0] for program in programs]
+    assert len({mark["verdict"] for mark in marks}) == 3
+    for program, mark in zip(programs, marks, strict=True):  # each one before all
+        assert marks_of([program, *programs]) == [mark, *marks]
+
+
 def test_lesson_draws_the_path_and_prints_a_page_for_a_terminal(tsc: Tsc, tmp_path: Path) -> None:
     picture = tmp_path / "way.png"
     assert tsc("lesson", "check", "1", "-e", SHORT_ANSWER, "--plot", picture).code == 1
