@@ -68,7 +68,7 @@ def _act(rng: random.Random, run: Simulation) -> None:
     run.advance(rng.randint(0, 200))
 
 
-def differs(number: int, is_held: bool = False) -> str | None:
+def replay_difference(number: int, is_held: bool = False) -> str | None:
     """Return the difference between a random run and its replay, or None."""
     data, rows = record_run(number, is_held)
     played_run = play(prepare(decode(data)))
@@ -84,7 +84,7 @@ if __name__ == "__main__":
     count = int(sys.argv[1])
     events = 0
     for round_number in range(count):
-        wrong = differs(round_number)
+        wrong = replay_difference(round_number)
         if wrong is not None:
             sys.exit(f"run {round_number}: {wrong}")
         if round_number % 100 == 99:

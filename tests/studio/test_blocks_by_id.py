@@ -93,11 +93,11 @@ class Ana:
             self.take_answer(json.loads(json.dumps(answer)))
         return answer
 
-    def writes(self) -> Json:
+    def write(self) -> Json:
         ids = [data["id"] for data in self.inside(self.form["body"])]
         return self.step(blocks={"form": self.form, "ids": ids})
 
-    def sends(self) -> None:
+    def send(self) -> None:
         self.program.submit([change_of(change) for change in self.answer["pending"]])
         self.step()
 
@@ -107,7 +107,7 @@ def program_of(text: str = TEXT) -> SharedProgram:
     return SharedProgram(parse_tree(text, lambda: f"i.{next(numbers)}"), "e")
 
 
-def changes(body: list[Json], rng: Random, next_id: Any) -> set[str]:
+def change_blocks(body: list[Json], rng: Random, next_id: Any) -> set[str]:
     """Change blocks at random; return the ids of those that were touched."""
     bodies = [body, *(inner_body for data in body for inner_body in data["bodies"])]
     filled_bodies = [body for body in bodies if body]
@@ -146,12 +146,12 @@ def test_only_touched_blocks_change_and_keep_their_ids(seed: int) -> None:
     nodes = dict(page_together._newest.blocks.nodes)  # type: ignore[union-attr]
     touched_ids: set[str] = set()
     for _ in range(rng.randrange(1, 5)):
-        touched_ids |= changes(ana.form["body"], rng, lambda: f"n{next(ana.numbers)}")
+        touched_ids |= change_blocks(ana.form["body"], rng, lambda: f"n{next(ana.numbers)}")
     expected_text = format_blocks(from_data(ana.form)).text
-    answer = ana.writes()
+    answer = ana.write()
     assert ana.text == expected_text == text_of(page_together._newest.page.view)  # type: ignore[union-attr]
     assert answer["is_shown"]
-    ana.sends()
+    ana.send()
     assert text_of(program.tree) == ana.text
     ids = {nodes[id] for id in touched_ids if id in nodes}
     inner_ids = {node for id in ids for node in
@@ -176,13 +176,13 @@ def test_concurrent_changes_of_others_are_kept(seed: int) -> None:
     change = Made("z:1", (Insert(Place(loop, ""), (Subtree("z.1", "BEEP(0.25, 990)"),)),))
     program.submit([change])
     ana.step()
-    changes(ana.form["body"], rng, lambda: f"n{next(ana.numbers)}")
-    ana.writes()
+    change_blocks(ana.form["body"], rng, lambda: f"n{next(ana.numbers)}")
+    ana.write()
     program.submit([Made("z:2", (Replace(last_id, (("text", "W(7.25)"),)),))])
     ana.step()
-    changes(ana.form["body"], rng, lambda: f"n{next(ana.numbers)}")
-    ana.writes()
-    ana.sends()
+    change_blocks(ana.form["body"], rng, lambda: f"n{next(ana.numbers)}")
+    ana.write()
+    ana.send()
     assert ana.text == text_of(program.tree)
     is_loop_there = loop in program.tree
     assert ("BEEP(0.25, 990)" in ana.text) is is_loop_there
@@ -194,13 +194,13 @@ def test_an_empty_place_belongs_to_its_own_block() -> None:
     ana = Ana(program)
     ana.form["body"][0]["values"][0] = [["NOTHING", ""]]
     ana.form["body"][0]["said"] = []
-    assert ana.writes()["is_shown"]
-    ana.sends()
+    assert ana.write()["is_shown"]
+    ana.send()
     assert "F(, " in ana.text
     assert text_of(program.tree) == TEXT
     ana.form["body"][0]["values"][0] = [["NUMBER", "4"]]
-    ana.writes()
-    ana.sends()
+    ana.write()
+    ana.send()
     assert text_of(program.tree).startswith("SI|F(4, (80));")
     assert ana.text == text_of(program.tree)
 
@@ -211,8 +211,8 @@ def test_a_deleted_block_with_new_contents_is_kept() -> None:
     loop = next(id for id in program.tree.subtree_ids() if program.tree[id].text == "LOOP(3)")
     ana.form["body"] = [data for data in ana.form["body"] if data["kind"] != "loop"]
     program.submit([Made("z:1", (Insert(Place(loop, ""), (Subtree("z.1", "BEEP(0.25, 990)"),)),))])
-    ana.writes()
-    ana.sends()
+    ana.write()
+    ana.send()
     assert "BEEP(0.25, 990)" in text_of(program.tree)
     assert ana.text == text_of(program.tree)
     assert ana.answer["why"] == "has_new"
@@ -226,13 +226,13 @@ def test_of_two_equal_blocks_the_touched_one_is_changed() -> None:
     [_, changed_id, other_id, _] = (id for id in program.tree[ROOT].children if id != START)
     ana = Ana(program)
     del ana.form["body"][1]
-    ana.writes()
-    ana.sends()
+    ana.write()
+    ana.send()
     assert changed_id not in program.tree
     assert other_id in program.tree
     ana.form["body"].reverse()
-    ana.writes()
-    ana.sends()
+    ana.write()
+    ana.send()
     assert program.tree[ROOT].children.index(other_id) == 2
 
 
@@ -254,7 +254,7 @@ def test_what_is_written_in_a_block_that_others_delete_is_kept(seed: int) -> Non
         data["said"] = []
         written_by_block[data["id"]] = str(number)
         if rng.random() < 0.5:
-            ana.writes()
-    ana.writes()
-    ana.sends()
+            ana.write()
+    ana.write()
+    ana.send()
     assert all(number in ana.text for number in written_by_block.values()), ana.text

@@ -48,7 +48,7 @@ class History:
     def __init__(self, rng: Random) -> None:
         self.rng = rng
         self.room = Room(ROBOTS)
-        self.room.teaches("class_places", places=MOST_PUPILS)
+        self.room.teach("class_places", places=MOST_PUPILS)
         self.pages: dict[str, Page] = {}
         self.gone_pages: dict[str, Page] = {}  # pages whose work is kept, by name
         self.brought_texts: set[str] = set()
@@ -58,19 +58,19 @@ class History:
         self.order: list[str] = []  # last seen order of waiting pupils
 
     def state(self) -> Json:
-        return self.room.teaches("class")
+        return self.room.teach("class")
 
     def answer(self, sender: Page, action: str, **fields: Any) -> Json | None:
         """Send a request as a page; None if it was removed."""
         try:
             answer = self.room.classroom.answer(sender.token, "192.0.2.9", {"do": action, **fields})
         except BadRequest:
-            self.leaves(sender)
+            self.leave(sender)
             return None
         sender.heard_s = self.room.now_s
         return answer
 
-    def leaves(self, page: Page) -> None:
+    def leave(self, page: Page) -> None:
         self.pages.pop(page.name, None)
         if page.text:
             self.gone_pages[page.name] = page
@@ -78,13 +78,13 @@ class History:
     # -- events
 
     def act(self) -> None:
-        ways = (self.comes, self.tells, self.tells, self.tells, self.wants, self.wants,
-                self.connects, self.connects, self.ends, self.passes, self.passes, self.removes,
-                self.gives, self.takes_robot, self.calls_next, self.brings,
-                self.hands_out)  # fmt: skip
+        ways = (self.come, self.tell, self.tell, self.tell, self.change_wishes, self.change_wishes,
+                self.connect, self.connect, self.end_connection, self.pass_time, self.pass_time,
+                self.remove_pupil, self.give_work_back, self.give_or_take_robot, self.call_next,
+                self.bring_work, self.hand_out)  # fmt: skip
         self.rng.choice(ways)()
 
-    def comes(self) -> None:
+    def come(self) -> None:
         name = self.rng.choice(NAMES)
         if name in self.pages:
             return
@@ -101,7 +101,7 @@ class History:
     def somebody(self) -> Page | None:
         return self.rng.choice(list(self.pages.values())) if self.pages else None
 
-    def tells(self) -> None:
+    def tell(self) -> None:
         page = self.somebody()
         if page is None:
             return
@@ -114,7 +114,7 @@ class History:
             return
         page.text = fields.get("text", page.text)
         page.lessons = fields.get("lessons", page.lessons)
-        self.opens(page, answer)
+        self.open_handout(page, answer)
         returned_work = answer.get("given")
         if returned_work and self.rng.random() < 0.7:
             receipt = {"key": returned_work["key"], "text": returned_work["text"]}
@@ -133,7 +133,7 @@ class History:
                 ]:
                     del self.gone_pages[name]
 
-    def opens(self, page: Page, answer: Json) -> None:
+    def open_handout(self, page: Page, answer: Json) -> None:
         """Open a handout, once; what the page says of it may be lost."""
         handout = answer.get("handout")
         assert (handout["text"] if handout else "") == self.offered(page)
@@ -150,23 +150,23 @@ class History:
         """Return the text of the handout that a page has to be offered."""
         return "" if page.confirmed_handout == self.handout else self.handout
 
-    def hands_out(self) -> None:
+    def hand_out(self) -> None:
         self.texts += 1
         self.handout = f"H({self.texts})"
-        state = self.room.teaches("class_hand_out", text=self.handout, robot="tinibot")
+        state = self.room.teach("class_hand_out", text=self.handout, robot="tinibot")
         assert state["handout"] == {"lesson": 0, "opened": 0}
 
     def version(self, page: Page) -> int:
         rows = self.state()["pupils"]
         return next(int(row["version"]) for row in rows if row["name"] == page.name)
 
-    def wants(self) -> None:
+    def change_wishes(self) -> None:
         page = self.somebody()
         if page is not None:
             self.answer(page, "here", wants=self.rng.random() < 0.8,
                         hand=self.rng.choice((True, False)))  # fmt: skip
 
-    def connects(self) -> None:
+    def connect(self) -> None:
         page = self.somebody()
         if page is None:
             return
@@ -174,7 +174,7 @@ class History:
         if answer == {}:
             page.robot = self.room.hosting.robots[self.room.hosting.requests[-1]["page"]]
 
-    def ends(self) -> None:
+    def end_connection(self) -> None:
         """A connection ends by itself: the robot has met its page, or none."""
         driving = [page for page in self.pages.values() if page.robot and not page.robot.has_ended]
         if not driving:
@@ -195,51 +195,51 @@ class History:
     def raw_robots(self) -> list[Json]:
         return self.room.classroom._state()["robots"]  # type: ignore[no-any-return]
 
-    def passes(self) -> None:
+    def pass_time(self) -> None:
         for _ in range(self.rng.choice((1, 3, 8, 30))):
             self.room.now_s += 1
             for page in list(self.pages.values()):
                 if self.rng.random() < 0.8:
                     self.answer(page, "here")
 
-    def removes(self) -> None:
+    def remove_pupil(self) -> None:
         page = self.somebody()
         if page is None or self.rng.random() < 0.5:
             return
         driven_fake_robot = page.robot if self.has_turn(page) else None
-        self.room.teaches("class_remove", pupil=self.room.number(page.name))
+        self.room.teach("class_remove", pupil=self.room.number(page.name))
         assert driven_fake_robot is None or driven_fake_robot.has_ended
-        self.leaves(page)
+        self.leave(page)
 
     def has_turn(self, page: Page) -> bool:
         return any(row["name"] == page.name and row["robot"] for row in self.rows())
 
-    def gives(self) -> None:
+    def give_work_back(self) -> None:
         kept_work, page = self.state()["kept"], self.somebody()
         if kept_work and page is not None:
             key = self.rng.choice(kept_work)["key"]
-            self.room.teaches("class_give_back", key=key, pupil=self.room.number(page.name))
+            self.room.teach("class_give_back", key=key, pupil=self.room.number(page.name))
 
-    def takes_robot(self) -> None:
+    def give_or_take_robot(self) -> None:
         port = f"port{self.rng.randrange(ROBOTS)}"
         gives = self.rng.random() < 0.6
         holder = next((robot["pupil"] for robot in self.raw_robots() if robot["port"] == port), "")
-        self.room.teaches("class_robot", port=port, gives=gives)
+        self.room.teach("class_robot", port=port, gives=gives)
         if not gives:
             self.failed_s.pop(port, None)
         if not gives and holder in self.pages:
             robot = self.pages[holder].robot
             assert robot is None or robot.has_ended  # the class controls only its own robots
 
-    def calls_next(self) -> None:
+    def call_next(self) -> None:
         page = self.somebody()
         if page is not None:
-            self.room.teaches("class_next", pupil=self.room.number(page.name))
+            self.room.teach("class_next", pupil=self.room.number(page.name))
 
-    def brings(self) -> None:
+    def bring_work(self) -> None:
         self.texts += 1
         text = f"S({self.texts})"
-        self.room.teaches("class_bring", name="Old", text=text, robot="", lessons=[LESSONS[0]])
+        self.room.teach("class_bring", name="Old", text=text, robot="", lessons=[LESSONS[0]])
         self.brought_texts.add(text)
 
     # -- invariants
@@ -256,13 +256,13 @@ class History:
         texts = {
             page.text for page in (*self.pages.values(), *self.gone_pages.values()) if page.text
         }
-        texts_there = {pupil["text"] for pupil in self.room.teaches("class_work")["pupils"]}
+        texts_there = {pupil["text"] for pupil in self.room.teach("class_work")["pupils"]}
         present_names = {row["name"] for row in self.rows()}
         assert texts | self.brought_texts <= texts_there, (texts | self.brought_texts) - texts_there
         for page in self.pages.values():
             if page.name in present_names and page.text:
                 number = self.room.number(page.name)
-                work = self.room.teaches("class_text", pupil=number)
+                work = self.room.teach("class_text", pupil=number)
                 assert (work["text"], sorted(work["lessons"])) == (page.text, page.lessons)
 
     def check_turns(self, state: Json) -> None:
@@ -295,7 +295,7 @@ class History:
         kept_state = json.loads(json.dumps(self.room.classroom.state_to_keep()))
         room_after = Room(0)
         assert room_after.classroom.resume(kept_state) == len(state["pupils"])
-        resumed_class = room_after.teaches("class")
+        resumed_class = room_after.teach("class")
         for name in ("code", "turn_s", "places"):
             assert resumed_class[name] == state[name], name
         states = [
@@ -307,8 +307,7 @@ class History:
             row["port"] for row in state["robots"]
         ]
         works = [
-            sorted(map(str, room.teaches("class_work")["pupils"]))
-            for room in (room_after, self.room)
+            sorted(map(str, room.teach("class_work")["pupils"])) for room in (room_after, self.room)
         ]
         assert works[0] == works[1]
         kept_rows = [
@@ -321,15 +320,15 @@ class History:
             request = {"do": "join", "code": state["code"], "name": page.name, "before": page.token}
             assert room_after.classroom.answer("", "192.0.2.9", request)["token"] == page.token
         for page in (*self.pages.values(), *self.gone_pages.values()):
-            handout = room_after.checks_in(page.token).get("handout", {"text": ""})
+            handout = room_after.check_in(page.token).get("handout", {"text": ""})
             assert handout["text"] == self.offered(page)
         next_lesson = Room(0)  # it has handed out nothing yet
         next_lesson.classroom.resume(kept_state, is_same_lesson=False)
-        code = next_lesson.teaches("class_places", places=MOST_PUPILS)["code"]
+        code = next_lesson.teach("class_places", places=MOST_PUPILS)["code"]
         for page in (*self.pages.values(), *self.gone_pages.values()):
             request = {"do": "join", "code": code, "name": page.name, "before": page.token}
             token = next_lesson.classroom.answer("", "192.0.2.9", request)["token"]
-            assert "handout" not in next_lesson.checks_in(token)
+            assert "handout" not in next_lesson.check_in(token)
 
 
 def numbers(state: Json) -> dict[int, str]:
@@ -356,12 +355,12 @@ def test_a_restarted_class_equals_a_new_one() -> None:
         ]
         room = history.room
         code, settings = room.classroom.code, {}
-        old_settings = room.teaches("class")
-        anew = room.teaches("class_anew")
+        old_settings = room.teach("class")
+        anew = room.teach("class_anew")
         assert anew["code"] != code and all(
             robot.has_ended for robot in driven_fake_robots if robot
         )
-        new_class = Room(0).teaches("class")
+        new_class = Room(0).teach("class")
         settings = {
             "code": anew["code"],
             "turn_s": old_settings["turn_s"],
@@ -372,10 +371,10 @@ def test_a_restarted_class_equals_a_new_one() -> None:
         assert anew == new_class | settings | {
             "robots": [{**port, "name": name_by_port[port["port"]]} for port in ports]
         }
-        assert room.teaches("class_work")["pupils"] == []
+        assert room.teach("class_work")["pupils"] == []
         for page in old_pages:
             with pytest.raises(BadRequest):
-                room.checks_in(page.token)
+                room.check_in(page.token)
             with pytest.raises(BadRequest):
                 room.classroom.answer(page.token, "192.0.2.9", {"do": "connect"})
         answer = room.classroom.answer("", "192.0.2.9", {
@@ -383,5 +382,5 @@ def test_a_restarted_class_equals_a_new_one() -> None:
             "before": old_pages[0].token if old_pages else "",
         })  # fmt: skip
         assert answer["name"] == "Ana" and answer["token"] not in {page.token for page in old_pages}
-        assert room.checks_in(answer["token"])["hand"] is False
+        assert room.check_in(answer["token"])["hand"] is False
         room.now_s += PLACE_S

@@ -44,7 +44,7 @@ class Mate:
         self.presses = self.ids = self.connection = self.newest_number = self.saw_stops = 0
         self.requests: list[Json] = []
         self.is_connected = False
-        self.thread = Thread(target=self._beats, daemon=True)
+        self.thread = Thread(target=self._beat, daemon=True)
         self.thread.start()
 
     def ask(self, action: str, **fields: Any) -> Json:
@@ -54,7 +54,7 @@ class Mate:
         return self.ask(action, page=self.name, connection=self.connection, seen=self.newest_number,
                         stops=self.presses, **fields)  # fmt: skip
 
-    def _beats(self) -> None:
+    def _beat(self) -> None:
         while not self.group.is_over:
             time.sleep(BEAT_S)
             self.saw_stops = self.ask("here").get("stops", 0)
@@ -66,7 +66,7 @@ class Mate:
                 if news.get("over"):
                     self.is_connected = False
 
-    def connects(self, saw_stops: int) -> None:
+    def connect(self, saw_stops: int) -> None:
         self.connection += 1
         self.newest_number = 0
         port = self.group.robot.port
@@ -74,13 +74,13 @@ class Mate:
                             saw_stops=saw_stops)  # fmt: skip
         self.is_connected = "failure" not in answer
 
-    def runs(self, stops: int, number: int) -> None:
+    def request_run(self, stops: int, number: int) -> None:
         """Ask for a run, which was pressed after this many presses of STOP and this much news."""
         self.ids += 1
         self.requests.append({"do": "upload", "id": self.ids, "image": PROGRAM, "robot": "tinibot",
                            "runs": True, "stops": stops, "seen": number})  # fmt: skip
 
-    def stops(self) -> None:
+    def stop(self) -> None:
         if self.is_connected:
             self.drive("stop")
         self.ask("stop", page="group", group_stops=self.presses)
@@ -98,7 +98,7 @@ class Group:
         self.late_threads: list[Thread] = []
         self.mates = [Mate(self, name) for name in PUPILS]
 
-    def begins(self) -> None:
+    def begin(self) -> None:
         self.mates[0].ask("here", wants=True)
         until(lambda: self.mates[0].ask("here")["place"] == 0, "it is their turn")
 
@@ -112,31 +112,31 @@ class Group:
         self.late_threads.append(Thread(target=act_late, daemon=True))
         self.late_threads[-1].start()
 
-    def drives(self, mate: Mate) -> None:
+    def let_drive(self, mate: Mate) -> None:
         """Let a pupil drive, whoever is driving."""
         end_s = time.monotonic() + HANG_LIMIT_S
         while not self.robot.moves:
             assert time.monotonic() < end_s, "it never drives"
             if not mate.is_connected:
-                mate.connects(mate.saw_stops)
+                mate.connect(mate.saw_stops)
             time.sleep(0.3)
-            mate.runs(mate.presses, mate.newest_number)
+            mate.request_run(mate.presses, mate.newest_number)
             time.sleep(0.7)
 
-    def races(self) -> None:
+    def race(self) -> None:
         """Let one pupil drive; then some press Run, and one presses STOP after them."""
         driver, *other_mates = self.rng.sample(self.mates, 3)
-        self.drives(driver)
+        self.let_drive(driver)
         for mate in self.rng.sample(other_mates, self.rng.randrange(3)):
-            act_pressed = partial(self._takes, mate, mate.presses, mate.saw_stops)
+            act_pressed = partial(self._take_over, mate, mate.presses, mate.saw_stops)
             self.act_later(act_pressed)
         if self.rng.random() < 0.5:
-            self.act_later(partial(driver.runs, driver.presses, driver.newest_number))
+            self.act_later(partial(driver.request_run, driver.presses, driver.newest_number))
         time.sleep(self.rng.random() * LATE_S)
         stopper = self.rng.choice(self.mates)
         stopper.presses += 1
         for _ in range(self.rng.randrange(1, 4)):
-            self.act_later(stopper.stops, 0.2)
+            self.act_later(stopper.stop, 0.2)
         self.join_threads()
         until(lambda: not self.robot.moves, "the robot stands", 3)
         end_s = time.monotonic() + WATCH_S
@@ -145,19 +145,19 @@ class Group:
             time.sleep(0.01)
         time.sleep(LATCH_S)
 
-    def _takes(self, mate: Mate, stops: int, saw_stops: int) -> None:
+    def _take_over(self, mate: Mate, stops: int, saw_stops: int) -> None:
         """Take the robot over, as a press of Run does, and then send the program."""
-        mate.connects(saw_stops)
+        mate.connect(saw_stops)
         number = mate.newest_number
         time.sleep(self.rng.random() * 0.3)
-        mate.runs(stops, number)
+        mate.request_run(stops, number)
 
     def join_threads(self) -> None:
         for thread in self.late_threads:
             thread.join(HANG_LIMIT_S)
         self.late_threads.clear()
 
-    def ends(self) -> None:
+    def end(self) -> None:
         self.is_over = True
         for mate in self.mates:
             mate.thread.join(HANG_LIMIT_S)
@@ -168,11 +168,11 @@ def race(count: int, seed: int) -> None:
     with PtyRobot(robots.load("tinibot").kit) as robot:
         group = Group(robot, seed)
         try:
-            group.begins()
+            group.begin()
             for _ in range(count):
-                group.races()
+                group.race()
         finally:
-            group.ends()
+            group.end()
 
 
 @pytest.mark.parametrize("seed", range(2))

@@ -41,17 +41,17 @@ class Robot:
         self.index_by_value: dict[str, int] = {}  # index of each value in its run
         self.count = 0  # number of values in a run
 
-    def tells(self) -> Json:
+    def tell(self) -> Json:
         action = self.rng.choice(("value", "value", "value", "place", "place", "text", "next"))
         if not (self.program or self.line) or action == "next":
             if self.program or self.line:
                 replaces = self.rng.random() < 0.3
-                return self._begins("program", "line") if replaces else self._ends()
+                return self._begin("program", "line") if replaces else self._end()
             if self.rng.random() < 0.3:
                 event = self.rng.choice(END_EVENTS)
                 self.connections += "connected" in event
                 return event
-            return self._begins("program", "line", "button")
+            return self._begin("program", "line", "button")
         program = self.program or self.line
         if action == "place":
             place = self.rng.randrange(500)
@@ -67,7 +67,7 @@ class Robot:
             return {"event": "TEXT", "text": value}
         return {"event": "SHOW", "value": value, "at": 7, "program": program}
 
-    def _begins(self, *kinds: str) -> Json:
+    def _begin(self, *kinds: str) -> Json:
         """Begin a run of one of these kinds, in the place of what runs."""
         self.run_count += 1
         self.program = self.line = ""
@@ -84,7 +84,7 @@ class Robot:
             return {"event": "PLACE", "at": 0, "program": program}
         return {"event": "STARTED", "program": program, "is_program": True}
 
-    def _ends(self) -> Json:
+    def _end(self) -> Json:
         self.program = self.line = ""
         self.place = None
         return self.rng.choice(END_MESSAGES)
@@ -98,7 +98,7 @@ class Page:
         self.run_key_and_count: list[Any] = ["", 0]
         self.items: list[Json] = []
 
-    def looks(self) -> list[Json]:
+    def look(self) -> list[Json]:
         known_count = self.run_key_and_count[1] if self.run_key_and_count[0] == self.runs.key else 0
         number, items = self.runs.news_after(self.run_key_and_count, self.name)
         items = [item for item in json.loads(json.dumps(items)) if item["number"] > known_count]
@@ -119,18 +119,18 @@ def test_each_member_gets_each_run_in_order(seed: int) -> None:
     rng = Random(seed)
     runs, robot = GroupRuns(lambda: 0.0), Robot(rng)
     page, drivers = Page(runs, "teo"), [Page(runs, name) for name in DRIVERS]
-    page.looks()
+    page.look()
     max_count = rng.choice((1, 5, 60))
     connections: list[Json] = []
     values_by_driver: dict[str, list[str]] = {name: [] for name in DRIVERS}
     for _ in range(200):
         for _ in range(rng.randint(1, max_count)):
             count_before = len(robot.all_values)
-            news = robot.tells()
+            news = robot.tell()
             values_by_driver[robot.driver] += robot.all_values[count_before:]
             runs.add_news(robot.driver, [news])
             assert len(runs._rows) == 1 or waiting_bytes(runs) <= group_runs.MOST_BYTES
-        items = page.looks()
+        items = page.look()
         places = [item["at"] for item in items if item["event"] == "PLACE"]
         assert len(places) <= 1
         if robot.place is not None:
@@ -138,7 +138,7 @@ def test_each_member_gets_each_run_in_order(seed: int) -> None:
         assert is_running(page) == bool(robot.program)
         connections += [item["robot"] for item in items if item["event"] == "ROBOT"]
         for driver in drivers:
-            driver.looks()
+            driver.look()
     numbers = [item["number"] for item in page.items]
     assert numbers == sorted(set(numbers))
     assert begin_and_end_by_turns(page)
@@ -219,16 +219,16 @@ def test_a_new_member_gets_only_the_current_run() -> None:
     started_event = {"event": "STARTED", "program": "a", "is_program": True}
     value = {"event": "SHOW", "value": "5"}
     runs.add_news("ana", [started_event, value, {"event": "DONE"}])
-    assert Page(runs, "teo").looks() == []
+    assert Page(runs, "teo").look() == []
     runs.add_news("ana", [started_event, value, {"event": "PLACE", "at": 4, "program": "a"}])
-    heard_events = [item["event"] for item in Page(runs, "eva").looks()]
+    heard_events = [item["event"] for item in Page(runs, "eva").look()]
     assert heard_events == ["STARTED", "SHOW", "PLACE"]
     new_runs = GroupRuns(lambda: 0.0)
     new_runs.add_news("ana", [started_event])
     page = Page(runs, "luz")
-    page.looks()
+    page.look()
     page.runs = new_runs  # after a crash of the class
-    assert [item["event"] for item in page.looks()] == ["STARTED"]
+    assert [item["event"] for item in page.look()] == ["STARTED"]
 
 
 @pytest.mark.parametrize("claimed_state", [None, 5, [], ["x", 1], ["x"], {"a": 1}, [[], {}]])
@@ -244,4 +244,4 @@ def test_events_have_the_time_of_their_run() -> None:
     runs.add_news("ana", [{"event": "STARTED", "program": "a", "is_program": True}])
     clock_s[0] += 0.25
     runs.add_news("ana", [{"event": "SHOW", "value": "5"}])
-    assert [item["ms"] for item in Page(runs, "teo").looks()] == [0, 250]
+    assert [item["ms"] for item in Page(runs, "teo").look()] == [0, 250]

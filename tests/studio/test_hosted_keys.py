@@ -30,36 +30,36 @@ class Hand(AskingPage):
 
     number = 0
 
-    def says(self, **request: object) -> int:
+    def say(self, **request: object) -> int:
         self.number += 1
         number = max((item["number"] for item in self.news), default=0)
         full_request = {"id": self.number, "seen": number, **request}
-        self.asks("beat", full_request)
+        self.ask("beat", full_request)
         return self.number
 
-    def holds(self, y: int) -> int:
-        return self.says(do="keys", keys=0, x=0, y=y)
+    def hold(self, y: int) -> int:
+        return self.say(do="keys", keys=0, x=0, y=y)
 
     def answer_to(self, number: int) -> Json:
         items: list[Json] = []
 
         def has_answer() -> bool:
-            self.asks("beat")
+            self.ask("beat")
             items[:] = [item for item in self.news if item.get("id") == number]
             return bool(items)
 
         until(has_answer, f"an answer to {number}")
         return items[0]
 
-    def uploads(self, text: str) -> Json:
+    def upload(self, text: str) -> Json:
         image = compile(text).image.hex()
-        return self.answer_to(self.says(do="upload", image=image, robot="tinibot", runs=True))
+        return self.answer_to(self.say(do="upload", image=image, robot="tinibot", runs=True))
 
-    def drives(self, robot: PtyRobot, power: int) -> None:
+    def drive(self, robot: PtyRobot, power: int) -> None:
         """Hold the stick until the robot does so."""
 
         def has_power() -> bool:
-            self.holds(power)
+            self.hold(power)
             return power_of(robot) == power
 
         until(has_power, f"it has {power} %")
@@ -101,41 +101,41 @@ def lesson(pty_robots: list[PtyRobot]) -> Iterator[Class]:
 def test_a_pupil_drives_only_the_assigned_robot(lesson: Class, pty_robots: list[PtyRobot]) -> None:
     ana, beto = lesson.pupil("Ana"), lesson.pupil("Beto")
     for hand in (ana, beto):
-        assert hand.asks("connect") == {}
-        hand.beats_until(lambda item: "connected" in item, "it is met")
-        assert hand.uploads(STICK_PROGRAM)["ok"]
-    ana.drives(pty_robots[0], 60)
+        assert hand.ask("connect") == {}
+        hand.beat_until(lambda item: "connected" in item, "it is met")
+        assert hand.upload(STICK_PROGRAM)["ok"]
+    ana.drive(pty_robots[0], 60)
     assert power_of(pty_robots[1]) == 0
-    ana.drives(pty_robots[0], 0)
-    beto.drives(pty_robots[1], -40)
+    ana.drive(pty_robots[0], 0)
+    beto.drive(pty_robots[1], -40)
     assert power_of(pty_robots[0]) == 0
-    ana.asks("beat")
-    beto.drives(pty_robots[1], 0)
+    ana.ask("beat")
+    beto.drive(pty_robots[1], 0)
 
 
 def test_a_pupil_without_a_turn_cannot_drive(lesson: Class, pty_robots: list[PtyRobot]) -> None:
     """Waiting pupils and those whose turn is over get a message."""
     ana, beto, carla = (lesson.pupil(name) for name in ("Ana", "Beto", "Carla"))
-    assert ana.asks("connect") == {}
-    ana.beats_until(lambda item: "connected" in item, "it is met")
-    assert ana.uploads(STICK_PROGRAM)["ok"]
-    ana.drives(pty_robots[0], 60)
-    assert carla.asks("connect") == {"failure": "turn_none"}
+    assert ana.ask("connect") == {}
+    ana.beat_until(lambda item: "connected" in item, "it is met")
+    assert ana.upload(STICK_PROGRAM)["ok"]
+    ana.drive(pty_robots[0], 60)
+    assert carla.ask("connect") == {"failure": "turn_none"}
     word = {"do": "keys", "id": 1, "seen": 0, "keys": 0, "x": 0, "y": -80}
-    assert [item["over"] for item in carla.asks("beat", word)["news"]] == ["left"]
+    assert [item["over"] for item in carla.ask("beat", word)["news"]] == ["left"]
     pupils = lesson.room.teach({"do": "class"})["pupils"]
     number = next(pupil["number"] for pupil in pupils if pupil["name"] == "Ana")
     lesson.room.teach({"do": "class_next", "pupil": number})
     until(lambda: power_of(pty_robots[0]) == 0, "it is stopped")
     moves = len(pty_robots[0].actions)
     for _ in range(5):
-        ana.holds(60)
-    ana.beats_until(lambda item: item.get("over") == "turn_over", "it is told")
+        ana.hold(60)
+    ana.beat_until(lambda item: item.get("over") == "turn_over", "it is told")
     assert power_of(pty_robots[0]) == 0 and len(pty_robots[0].actions) == moves
-    assert beto.asks("connect") == {}
-    beto.beats_until(lambda item: "connected" in item, "it is met")
-    assert beto.uploads(STICK_PROGRAM)["ok"]
-    beto.drives(pty_robots[1], 40)
+    assert beto.ask("connect") == {}
+    beto.beat_until(lambda item: "connected" in item, "it is met")
+    assert beto.upload(STICK_PROGRAM)["ok"]
+    beto.drive(pty_robots[1], 40)
     assert power_of(pty_robots[0]) == 0
 
 
@@ -144,16 +144,16 @@ def test_a_pupils_key_cannot_release_a_teachers_stop(
 ) -> None:
     """Earlier keys are void, and held keys start no program."""
     ana = lesson.pupil("Ana")
-    assert ana.asks("connect") == {}
-    ana.beats_until(lambda item: "connected" in item, "it is met")
-    assert ana.uploads(STICK_PROGRAM)["ok"]
-    ana.drives(pty_robots[0], 60)
+    assert ana.ask("connect") == {}
+    ana.beat_until(lambda item: "connected" in item, "it is met")
+    assert ana.upload(STICK_PROGRAM)["ok"]
+    ana.drive(pty_robots[0], 60)
     lesson.room.teach({"do": "stop_all"})
-    number = ana.holds(60)
+    number = ana.hold(60)
     assert ana.answer_to(number)["failure"] == "stopped_elsewhere"
     until(lambda: power_of(pty_robots[0]) == 0, "it is stopped")
     for _ in range(20):
-        ana.answer_to(ana.holds(60))
+        ana.answer_to(ana.hold(60))
     assert power_of(pty_robots[0]) == 0
 
 
@@ -163,8 +163,8 @@ def hand(pty_robots: list[PtyRobot]) -> Iterator[Hand]:
     hosting = Hosting()
     new_hand = Hand(hosting.answer, pty_robots[0].port)
     try:
-        assert new_hand.asks("connect") == {}
-        new_hand.beats_until(lambda event: "connected" in event, "it is met")
+        assert new_hand.ask("connect") == {}
+        new_hand.beat_until(lambda event: "connected" in event, "it is met")
         yield new_hand
     finally:
         hosting.close()
@@ -174,12 +174,12 @@ def test_a_silent_page_holds_no_keys(hand: Hand, pty_robots: list[PtyRobot]) -> 
     """This holds even if the run is not its own, so that it continues."""
     robot = pty_robots[0]
     image = compile(STICK_PROGRAM.replace("SI|", "SB|")).image.hex()
-    request_id = hand.says(do="upload", image=image, robot="tinibot", runs=False)
+    request_id = hand.say(do="upload", image=image, robot="tinibot", runs=False)
     assert hand.answer_to(request_id)["ok"]
     robot.push()
 
     def has_power_60() -> bool:
-        hand.holds(60)
+        hand.hold(60)
         return power_of(robot) == 60
 
     until(has_power_60, "it drives")
@@ -187,6 +187,6 @@ def test_a_silent_page_holds_no_keys(hand: Hand, pty_robots: list[PtyRobot]) -> 
 
 
 def test_impossible_key_states_are_refused_and_the_next_message_is_accepted(hand: Hand) -> None:
-    answer = hand.answer_to(hand.says(do="keys", keys=0, x=0, y=101))
+    answer = hand.answer_to(hand.say(do="keys", keys=0, x=0, y=101))
     assert answer["failure"] == "bad_request"
-    assert hand.answer_to(hand.holds(60))["ok"]
+    assert hand.answer_to(hand.hold(60))["ok"]

@@ -311,8 +311,8 @@ def asker(
         token = room.answer("", "192.0.2.9", join)["token"]
         room.answer(token, "192.0.2.9", {"do": "here", "wants": True})
         page = AskingPage(lambda request: room.answer(token, "192.0.2.9", request), "turn")
-    assert page.asks("connect") == {}
-    page.beats_until(lambda item: "connected" in item, "it is met")
+    assert page.ask("connect") == {}
+    page.beat_until(lambda item: "connected" in item, "it is met")
     yield page
     hosting.close()
 
@@ -321,10 +321,10 @@ def test_a_heartbeat_delivers_a_lost_stop_but_no_old_stop_ends_a_run(
     asker: AskingPage, robot: PtyRobot
 ) -> None:
     def has_news(stops: int) -> bool:
-        return "news" in asker.asks("beat", stops=stops)
+        return "news" in asker.ask("beat", stops=stops)
 
     def start_drive(stops: int) -> None:
-        asker.asks("beat", asker.run(stops), stops=stops)
+        asker.ask("beat", asker.run(stops), stops=stops)
         until(lambda: has_news(stops) and robot.moves, "it drives")
 
     def count_stops() -> int:
@@ -335,19 +335,19 @@ def test_a_heartbeat_delivers_a_lost_stop_but_no_old_stop_ends_a_run(
         assert not robot.moves
 
     start_drive(0)
-    asker.asks("beat", stops=1)
+    asker.ask("beat", stops=1)
     wait_for_stop(1)
     start_drive(1)
     start_count = len(robot.received)
-    asker.asks("stop", stops=1)  # late, or a repeated beat
+    asker.ask("stop", stops=1)  # late, or a repeated beat
     for _ in range(10):
-        asker.asks("beat", stops=1)
+        asker.ask("beat", stops=1)
     assert robot.moves and b"\0" * 4 not in robot.received[start_count:]
     # Another tab, and a page without a count, always stop.
     other_tab = {"page": "other"} if asker.port == "turn" else {"tab": "other"}
     other_requests: list[Json] = [{"stops": 1, **other_tab}, {"stops": 0}]
     for count, other_fields in enumerate(other_requests, start=2):
-        asker.asks("stop", **other_fields)
+        asker.ask("stop", **other_fields)
         wait_for_stop(count)
         start_drive(1)
 
@@ -359,17 +359,17 @@ def test_a_connect_with_a_lost_answer_is_repeated(asker: AskingPage, robot: PtyR
 
     def connect_twice(connection: int) -> None:
         asker.news.clear()
-        assert asker.asks("connect", connection=connection) == {}
-        assert asker.asks("connect", connection=connection) == {}
-        asker.beats_until(lambda item: "connected" in item, "it is met", connection=connection)
+        assert asker.ask("connect", connection=connection) == {}
+        assert asker.ask("connect", connection=connection) == {}
+        asker.beat_until(lambda item: "connected" in item, "it is met", connection=connection)
         [connected_item] = [item for item in asker.news if "connected" in item]
         assert connected_item["held_by"] == ""  # not held by the previous page
 
     connect_twice(2)
     connect_twice(3)
-    assert asker.asks("connect", connection=2) == {}
+    assert asker.ask("connect", connection=2) == {}
     asker.news.clear()
     for _ in range(5):
-        asker.asks("beat", connection=3)
+        asker.ask("beat", connection=3)
     assert not any("over" in item for item in asker.news)
-    assert asker.asks("beat", connection=2)["news"][0]["over"] == "left"
+    assert asker.ask("beat", connection=2)["news"][0]["over"] == "left"

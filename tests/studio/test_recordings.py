@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from tests.studio.runs_again import differs, record_run
+from tests.studio.runs_again import record_run, replay_difference
 from tiniscript import compile, robots
 from tiniscript.link.messages import AFTER_GAP
 from tiniscript.link.payloads import ReadingEvent
@@ -301,7 +301,7 @@ def test_each_differing_row_is_reported() -> None:
 @pytest.mark.parametrize("number", range(12))
 @pytest.mark.parametrize("is_held", [False, True])
 def test_a_run_is_reproduced(number: int, is_held: bool) -> None:
-    assert differs(number, is_held) is None
+    assert replay_difference(number, is_held) is None
 
 
 def test_a_replay_accepts_no_input_from_the_viewer() -> None:

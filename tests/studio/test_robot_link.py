@@ -51,7 +51,7 @@ class Robot:
     def event(self, timeout_s: float) -> tuple[int, Event] | None:
         return (0, self.events.pop(0)) if self.events else None
 
-    def ends(self, event_name: str) -> None:
+    def end_run(self, event_name: str) -> None:
         """Report that a run has ended so: the current one or, as a late message, an earlier one."""
         self.runs_own = None
         if event_name == "DONE":
@@ -61,12 +61,12 @@ class Robot:
         else:
             self.events.append(event("STOPPED") if event_name == "STOPPED" else LostEvent())
 
-    def begins(self, is_own: bool, look_at_end: Callable[[], object] | None = None) -> None:
+    def begin_run(self, is_own: bool, look_at_end: Callable[[], object] | None = None) -> None:
         """A run begins; the answer about its starter may come after its end."""
         self.run += 1
         self.runs_own = is_own
         if look_at_end is not None:
-            self.ends("DONE")
+            self.end_run("DONE")
             look_at_end()
         if is_own and self.pending_request is not None:
             fields = {**dict.fromkeys(ReceiptReply._fields, 0), "run": self.run}
@@ -74,7 +74,7 @@ class Robot:
             self.pending_request = None
         self.events.append(StartedEvent(self.run, PROGRAM))
 
-    def restarts(self) -> None:
+    def restart(self) -> None:
         if self.runs_own is not None:
             self.events.append(RestartedEvent())
         self.boot, self.run, self.runs_own = self.boot + 1, 0, None
@@ -97,20 +97,20 @@ def test_the_run_of_a_page_is_tracked_until_its_end(seed: int) -> None:
                 link.news()
             case "answer" if robot.pending_request is not None:
                 if rng.random() < 0.3:
-                    robot.ends(rng.choice(("STOPPED", "DONE")))  # that of the run before
+                    robot.end_run(rng.choice(("STOPPED", "DONE")))  # that of the run before
                 on_end = rng.choice((lambda: None, link.news))
-                robot.begins(is_own=True, look_at_end=on_end if rng.random() < 0.3 else None)
+                robot.begin_run(is_own=True, look_at_end=on_end if rng.random() < 0.3 else None)
                 if robot.is_program:
                     own_programs.add((robot.boot, robot.run))
             case "refuse" if robot.pending_request is not None:
                 robot.pending_request.outcome, robot.pending_request = Reply(CANCELLED), None
             case "other":
-                robot.begins(is_own=False)
+                robot.begin_run(is_own=False)
             case "end":
-                robot.ends(rng.choice(("DONE", "FAULT", "STOPPED")))
+                robot.end_run(rng.choice(("DONE", "FAULT", "STOPPED")))
             case "lost" | "restart" as event_name:
                 link.news()  # earlier reports have arrived
-                robot.ends("LOST") if event_name == "lost" else robot.restarts()
+                robot.end_run("LOST") if event_name == "lost" else robot.restart()
                 link.news()  # no run begins soon after it
             case _:
                 continue

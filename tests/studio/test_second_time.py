@@ -184,7 +184,7 @@ class ComingPage:
         for _ in range(self.rng.choice((1, 2))):  # the answer was lost
             self._is_connected = self._ask("connect") == {}
 
-    def _wants_run(self) -> None:
+    def _request_run(self) -> None:
         self._number += 1
         self._asked.append(
             {**RUN_REQUEST, "id": self._number, "stops": self.stops, "seen": self._seen_number}
@@ -194,7 +194,7 @@ class ComingPage:
         self.stops += 1
         self._ask("stop")
 
-    def leaves_and_comes(self) -> None:
+    def leave_and_come(self) -> None:
         self._ask("leave")
         self._connect()
 
@@ -207,7 +207,7 @@ class ComingPage:
         if not self._is_connected:
             if draw_number < 0.1:
                 self._connect()
-                self._wants_run()  # requested at once, because a run may be under way
+                self._request_run()  # requested at once, because a run may be under way
         elif draw_number < 0.01:
             self._ask("leave")
             self._is_connected, self.end = False, ""
@@ -218,7 +218,7 @@ class ComingPage:
         elif draw_number < 0.04:
             self._is_asleep, self.end = not self._is_asleep, ""
         elif draw_number < 0.3:
-            self._wants_run()
+            self._request_run()
         if self.is_beating:
             self._beat()
 
@@ -305,7 +305,7 @@ def test_earlier_users_of_a_port_do_not_affect_later_ones(hosting: Hosting, seed
     assert stopped_ms and len(Room.robots) > 20
     assert len({(robot.tab, robot.connection) for robot in Room.robots}) == len(Room.robots)
     for page in pages:
-        page.leaves_and_comes()
+        page.leave_and_come()
     hosting.close()
     assert not any(robot.is_open for robot in Room.robots)
 

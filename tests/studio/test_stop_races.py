@@ -78,7 +78,7 @@ class Meeting:
     def answer(self, number: int) -> dict[str, Any]:
         return next((item for item in self.news if item.get("id") == number), {})
 
-    def races(self) -> None:
+    def race(self) -> None:
         """Some uploads are before the STOP, in the middle of it, and after it."""
         late_ms = self.rng.choice((30, 400, 1900, 4000))
         numbers = []
@@ -101,7 +101,7 @@ def race(count: int, seed: int) -> None:
     meeting.advance(2000)
     meeting.attending.on_beat([], 0)
     for _ in range(count):
-        meeting.races()
+        meeting.race()
         meeting.advance(round(1000 * LATCH_S), 10)
 
 
@@ -146,12 +146,12 @@ class LateLink:
         self._news: list[dict[str, Any]] = []
         self._confirms_ms = float("inf")
 
-    def tells(self) -> None:
+    def tell(self) -> None:
         """Report stops of other clients, and the events between them."""
         names = self._rng.choices(("STOPPED", "STARTED", "SHOW"), k=self._rng.randrange(6))
         self._news += [{"event": name} for name in names]
 
-    def hears(self, confirms_after_ms: float) -> None:
+    def delay_confirmation(self, confirms_after_ms: float) -> None:
         self._late_ms = confirms_after_ms
 
     def stop(self) -> None:
@@ -178,9 +178,9 @@ def test_no_earlier_stop_confirms_the_newest_one(
     monkeypatch.setattr(hosted_robot, "monotonic", lambda: link.now_ms / 1000)
     hosted_simple_namespace = SimpleNamespace(attending=attending, is_unconfirmed=False)
     for _ in range(5):
-        link.tells()
+        link.tell()
         late_ms = rng.choice((0, 40, 1000, float("inf")))
-        link.hears(late_ms)
+        link.delay_confirmation(late_ms)
         if end == "part":
             HostedRobot._part_from_robot(
                 cast(HostedRobot, hosted_simple_namespace), cast(RobotLink, link)
@@ -192,7 +192,7 @@ def test_no_earlier_stop_confirms_the_newest_one(
                 attending.attend(cast(RobotLink, link))
             is_confirmed = attending.last_stop == CONFIRMED
         assert is_confirmed == (late_ms < float("inf")), late_ms
-        link.tells()
+        link.tell()
 
 
 @pytest.mark.parametrize("seed", range(10))
@@ -203,8 +203,8 @@ def test_the_outcome_of_a_stop_is_final_once_its_connection_has_ended(seed: int)
     attending = Attending(lambda: link.now_ms / 1000)
     hosted = SimpleNamespace(attending=attending, has_ended=False)
     for _ in range(3):
-        link.tells()
-        link.hears(rng.choice((40, 200, float("inf"))))
+        link.tell()
+        link.delay_confirmation(rng.choice((40, 200, float("inf"))))
         attending.latch()
         for _ in range(rng.randrange(20)):
             attending.attend(cast(RobotLink, link))

@@ -21,7 +21,7 @@ class AskingPage:
         self.news: list[Json] = []
         self._number = 0
 
-    def asks(self, action: str, *requests: Json, connection: int = 1, **fields: object) -> Json:
+    def ask(self, action: str, *requests: Json, connection: int = 1, **fields: object) -> Json:
         number = max((item["number"] for item in self.news), default=0)
         request = {"do": action, "page": "me", "connection": connection, "port": self.port,
                    "robot": "tinibot", "language": "en", "seen": number, "asked": list(requests),
@@ -30,11 +30,11 @@ class AskingPage:
         self.news += [item for item in answer.get("news", ()) if item["number"] > number]
         return answer
 
-    def beats_until(
+    def beat_until(
         self, is_reached: Callable[[Json], object], description: str, **fields: Any
     ) -> None:
         def has_arrived() -> bool:
-            self.asks("beat", **fields)
+            self.ask("beat", **fields)
             return any(is_reached(item) for item in self.news)
 
         until(has_arrived, description)

@@ -72,28 +72,28 @@ class Room:
         ports = [f"port{k}" for k in range(robots)]
         self.classroom = Classroom(self.hosting, ports, 60, lambda: self.now_s)  # type: ignore[arg-type]
 
-    def joins(self, name: str, address: str = PUPIL_ADDRESS) -> str:
+    def join(self, name: str, address: str = PUPIL_ADDRESS) -> str:
         answer = self.classroom.answer(
             "", address, {"do": "join", "code": self.classroom.code, "name": name}
         )
         return str(answer["token"])
 
-    def checks_in(self, token: str, wants_turn: bool | None = None, **fields: Any) -> Json:
+    def check_in(self, token: str, wants_turn: bool | None = None, **fields: Any) -> Json:
         request = {"do": "here", **fields} | ({} if wants_turn is None else {"wants": wants_turn})
         return self.classroom.answer(token, PUPIL_ADDRESS, request)
 
-    def connects(self, token: str) -> FakeRobot:
+    def connect(self, token: str) -> FakeRobot:
         assert (
             self.classroom.answer(token, PUPIL_ADDRESS, {"do": "connect", "page": "x", "port": "y"})
             == {}
         )
         return self.hosting.robots[self.hosting.requests[-1]["page"]]
 
-    def teaches(self, action: str, **fields: Any) -> Json:
+    def teach(self, action: str, **fields: Any) -> Json:
         return self.classroom.teach({"do": action, **fields})
 
     def number(self, name: str) -> int:
-        return next(int(pupil["number"]) for pupil in self.teaches("class")["pupils"]
+        return next(int(pupil["number"]) for pupil in self.teach("class")["pupils"]
                     if pupil["name"] == name)  # fmt: skip
 
 
