@@ -10,7 +10,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator
 from random import Random
 
-from tests.together.does import apply_edits
+from tests.together.applying import apply_edits
 from tiniscript.syntax.formatter import instruction_text
 from tiniscript.syntax.lexer import scan
 from tiniscript.together.form import Delete, Insert, Move, Operation, Place, Replace, Unwrap, Wrap
@@ -48,21 +48,21 @@ class Pupil:
         self._rng, self._numbers, self._spread = rng, numbers, spread
         self._cut_lines: Text = []
 
-    def acts(self) -> None:
+    def act(self) -> None:
         """Continue typing, or take another action."""
         if self.stages or self._rng.random() < 0.55:
-            self.types()
+            self.type()
         else:
-            self.does_by_blocks()
+            self.edit_blocks()
 
-    def drops(self) -> None:
+    def drop(self) -> None:
         """Cut text is not pasted, and unfinished text is not finished."""
         self.page.give_up()
         self.stages, self._cut_lines = [], []
 
-    def finishes(self) -> None:
+    def finish(self) -> None:
         while self.stages:
-            self.types()
+            self.type()
         self.page.leave()
         self.page.give_up()
 
@@ -84,7 +84,7 @@ class Pupil:
 
     # -- by blocks --------------------------------------------------------------------------------
 
-    def does_by_blocks(self) -> bool:
+    def edit_blocks(self) -> bool:
         page = self.page
         page.leave()
         view = page.view
@@ -186,7 +186,7 @@ class Pupil:
 
     # -- with the keyboard ------------------------------------------------------------------------
 
-    def types(self) -> None:
+    def type(self) -> None:
         page = self.page
         if not self.stages:
             has_staying_draft = any(draft.stays for draft in page.drafts)

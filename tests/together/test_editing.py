@@ -85,24 +85,24 @@ class Editor:
         self.news, self.shown_answer = [], answer
         self.change(answer["changes"])
 
-    def hears(self) -> None:
+    def hear(self) -> None:
         """Send pending changes, and receive news."""
         self.program.submit(list(map(change_of, self.shown_answer["pending"])))
         name = self.shown_answer["kept"]["name"]
         news = self.program.news(name, self.shown_answer["since"], self.shown_answer["epoch"])
         self.news.append(json.loads(json.dumps(news)))
 
-    def types(self, rng: Random) -> bool:
+    def type(self, rng: Random) -> bool:
         """Press a key: of an instruction below a line, of a loose one, or any; return whether a
         line is finished.
         """
         if not self.keys and rng.random() < 0.7:
             end = self.text.find("\n", rng.randint(0, len(self.text)))
-            self.goes_to(end if end >= 0 else len(self.text))
+            self.go_to(end if end >= 0 else len(self.text))
             self.keys = list(f"\n{rng.choice(('F', 'b', 'L'))}({rng.randint(1, 99)}, 50)")
             self.keys += ["\n"] * (rng.random() < 0.5)
             if rng.random() < 0.2:
-                self.goes_to(len(self.text))
+                self.go_to(len(self.text))
                 self.keys = list(f"\n/// F({rng.randint(1, 99)}, 50)")
         key, line = self.keys.pop(0) if self.keys else rng.choice(KEYS), self.line
         if key == BACKSPACE:
@@ -119,7 +119,7 @@ class Editor:
         was_hot, self.is_hot = self.is_hot, True
         return self.line != line and was_hot
 
-    def goes_to(self, at: int) -> None:
+    def go_to(self, at: int) -> None:
         line, self.column = self.line, at
         self.is_hot = self.is_hot and self.line == line
 
@@ -135,15 +135,15 @@ def test_editors_that_hear_late_end_with_the_same_text(seed: int) -> None:
     for _ in range(TURNS):
         editor = rng.choice(editors)
         for _ in range(rng.randint(1, 6)):
-            if editor.types(rng):
+            if editor.type(rng):
                 editor.take(editor.step())
         if rng.random() < 0.3:
-            editor.goes_to(rng.randint(0, len(editor.text)))
+            editor.go_to(rng.randint(0, len(editor.text)))
         if rng.random() < 0.5:
-            editor.hears()
+            editor.hear()
         answer = editor.step()
         if rng.random() < 0.3:  # typing there changes something, so it is void
-            editor.types(rng)
+            editor.type(rng)
             answer = editor.step()
         row = editor.text.split("\n")[editor.line]
         editor.take(answer)
@@ -167,7 +167,7 @@ def test_editors_that_hear_late_end_with_the_same_text(seed: int) -> None:
     while any(editor.shown_answer["pending"] or editor.shown_answer["since"] != program.number
               for editor in editors):  # fmt: skip
         for editor in editors:
-            editor.hears()
+            editor.hear()
             editor.take(editor.step())
     assert program.number > 1 and reloads and draft_count
     for editor in editors:

@@ -32,14 +32,14 @@ def history(seed: int, deeds: int, pages: int) -> World:
     def act(name: str) -> None:
         nonlocal change_count
         pupil = world.pupils[name]
-        pupil.acts()
+        pupil.act()
         if not pupil.stages:
             change_count += 1
             if change_count % EDITS_PER_COMPARISON == 0:
                 world.check()
         drafts = len(pupil.page.drafts)
         if drafts > 2 or (drafts and not pupil.stages and rng.random() < 0.1):
-            pupil.drops()
+            pupil.drop()
         world.schedule(rng.uniform(0.5, 5), act, name)
 
     def make_trouble(name: str) -> None:
@@ -82,11 +82,11 @@ def lesson(seed: int, pages: int, lesson_s: float = LESSON_S) -> World:
             pupil.focus = max(0.0, min(lines - 1.0, rng.gauss(0.4 * lines, 3.0))) / lines
         if is_typing:
             while pupil.stages:
-                pupil.types()
+                pupil.type()
         elif rng.random() < 0.35:
-            pupil.does_by_blocks()
+            pupil.edit_blocks()
         else:
-            pupil.types()
+            pupil.type()
         if pupil.page.drafts and not pupil.stages:
             pupil.page.give_up()
         pause_s = rng.gauss(1.5, 0.5) if pupil.stages or is_typing else rng.gauss(3.0, 1.0)

@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from tests.together.does import apply_edits
+from tests.together.applying import apply_edits
 from tiniscript.together.form import (
     CHANGED,
     CIRCLE,
@@ -56,29 +56,27 @@ class PagePair:
         tree = self.program.tree
         return next(id for id in tree.subtree_ids() if tree[id].text == text)
 
-    def sends(self, page: Page) -> None:
+    def send(self, page: Page) -> None:
         self.program.submit(page.pending_changes)
-        self.hears(page)
+        self.hear(page)
 
-    def hears(self, page: Page) -> None:
+    def hear(self, page: Page) -> None:
         page.receive(self.program.news(page.name, page.number, page.epoch))
 
     def meet(self) -> str:
         """Return the program on one line, once both have heard all."""
         for page in (self.ana, self.luz) * 2:
-            self.sends(page)
+            self.send(page)
         assert self.ana.base.checksum() == self.luz.base.checksum()
         assert self.ana.view.checksum() == self.program.tree.checksum()
         assert self.luz.view.checksum() == self.program.tree.checksum()
         return " ".join(text_of(self.program.tree).split())
 
-    def inserts(
-        self, page: Page, container: str, previous: str, text: str = "BEEP(1, 440)"
-    ) -> None:
+    def insert(self, page: Page, container: str, previous: str, text: str = "BEEP(1, 440)") -> None:
         node = Subtree(page.new_id(), text)
         assert apply_edits(page, [Insert(Place(container, previous), (node,))])
 
-    def types(self, page: Page, old_text: str, new_text: str, is_hot: bool = False) -> None:
+    def type(self, page: Page, old_text: str, new_text: str, is_hot: bool = False) -> None:
         """Change part of a line, and leave it unless it `is_hot`."""
         [k] = [k for k, row in enumerate(page.lines) if old_text in row]
         rows = page.lines[:]
@@ -94,7 +92,7 @@ def pair() -> PagePair:
 
 def test_a_delete_spares_changes_unseen_by_its_author(pair: PagePair) -> None:
     loop = pair.find("LOOP(3)")
-    pair.inserts(pair.ana, loop, pair.find("B(1, 40)"))
+    pair.insert(pair.ana, loop, pair.find("B(1, 40)"))
     apply_edits(pair.luz, [Delete(tuple(pair.luz.view.subtree_ids(loop)))])
     assert "LOOP(3); B(1, 40); BEEP(1, 440);" in pair.meet()
     assert pair.luz.refusals[-1][1] == HAS_NEW
@@ -102,7 +100,7 @@ def test_a_delete_spares_changes_unseen_by_its_author(pair: PagePair) -> None:
 
 
 def test_a_branch_is_deleted_with_all_its_contents_or_not_at_all(pair: PagePair) -> None:
-    pair.inserts(pair.ana, pair.find("IF(X < 1)"), pair.find("ELSE"))
+    pair.insert(pair.ana, pair.find("IF(X < 1)"), pair.find("ELSE"))
     rows = [row for row in pair.luz.lines if "ELSE" not in row and "W(1)" not in row]
     pair.luz.type(rows, 0)
     pair.luz.flush()
@@ -112,20 +110,20 @@ def test_a_branch_is_deleted_with_all_its_contents_or_not_at_all(pair: PagePair)
 
 def test_a_new_block_encloses_instructions_inserted_meanwhile(pair: PagePair) -> None:
     first_id, last_id = pair.find("B(1, 40)"), pair.find("R(1, 40)")
-    pair.inserts(pair.ana, pair.find("LOOP(3)"), first_id)
+    pair.insert(pair.ana, pair.find("LOOP(3)"), first_id)
     apply_edits(pair.luz, [Wrap((first_id, last_id), Subtree(pair.luz.new_id(), "WHILE(X < 2)"))])
     assert "WHILE(X < 2); B(1, 40); BEEP(1, 440); R(1, 40); END_WHILE;" in pair.meet()
 
 
 def test_a_place_whose_neighbour_was_deleted_is_kept(pair: PagePair) -> None:
     apply_edits(pair.ana, [Delete((pair.find("R(1, 40)"),))])
-    pair.inserts(pair.luz, pair.find("LOOP(3)"), pair.find("R(1, 40)"))
+    pair.insert(pair.luz, pair.find("LOOP(3)"), pair.find("R(1, 40)"))
     assert "B(1, 40); BEEP(1, 440); END_LOOP" in pair.meet()
 
 
 def test_the_first_place_of_a_removed_block_is_kept(pair: PagePair) -> None:
     apply_edits(pair.ana, [Unwrap(pair.find("LOOP(3)"))])
-    pair.inserts(pair.luz, pair.find("LOOP(3)"), "")
+    pair.insert(pair.luz, pair.find("LOOP(3)"), "")
     assert "F(1, 80); BEEP(1, 440); B(1, 40); R(1, 40); IF" in pair.meet()
 
 
@@ -138,8 +136,8 @@ def test_two_blocks_moved_into_each_other_form_no_cycle(pair: PagePair) -> None:
 
 
 def test_the_later_of_two_values_wins_and_undo_restores_the_other(pair: PagePair) -> None:
-    pair.types(pair.ana, "F(1, 80)", "F(2, 80)")
-    pair.types(pair.luz, "F(1, 80)", "F(1, 99)")
+    pair.type(pair.ana, "F(1, 80)", "F(2, 80)")
+    pair.type(pair.luz, "F(1, 80)", "F(1, 99)")
     assert "F(1, 99)" in pair.meet()
     assert any("F(2, 80)" in str(change) for change in pair.program.taken_changes)
     assert not pair.ana.undo()  # her text is gone
@@ -150,9 +148,9 @@ def test_the_later_of_two_values_wins_and_undo_restores_the_other(pair: PagePair
 
 
 def test_an_undo_after_another_pupils_change_is_refused(pair: PagePair) -> None:
-    pair.types(pair.luz, "F(1, 80)", "F(1, 99)")
+    pair.type(pair.luz, "F(1, 80)", "F(1, 99)")
     pair.meet()
-    pair.types(pair.ana, "F(1, 99)", "F(5, 99)")
+    pair.type(pair.ana, "F(1, 99)", "F(5, 99)")
     assert pair.luz.undo()
     assert "F(5, 99)" in pair.meet()
     assert pair.luz.refusals[-1][1] == CHANGED
@@ -191,16 +189,16 @@ def test_a_page_makes_no_change_that_leaves_no_program() -> None:
 def test_a_line_being_typed_is_deleted_only_with_its_instruction(
     pair: PagePair,
 ) -> None:
-    pair.types(pair.ana, "B(1, 40);", "B(1, 4", is_hot=True)
+    pair.type(pair.ana, "B(1, 40);", "B(1, 4", is_hot=True)
     assert not pair.ana.pending_changes
     apply_edits(pair.luz, [Move((pair.find("B(1, 40)"),), Place(ROOT, pair.find("L(1, 60)")))])
-    pair.sends(pair.luz)
-    pair.hears(pair.ana)
+    pair.send(pair.luz)
+    pair.hear(pair.ana)
     assert pair.ana.lines[-1] == "  B(1, 4"
     assert pair.ana.caret == len(pair.ana.lines) - 1
     apply_edits(pair.luz, [Delete((pair.find("B(1, 40)"),))])
-    pair.sends(pair.luz)
-    pair.hears(pair.ana)
+    pair.send(pair.luz)
+    pair.hear(pair.ana)
     assert pair.ana.lines[-1] == "  B(1, 4"
     pair.ana.type([*pair.ana.lines[:-1], "B(1, 45)"], len(pair.ana.lines) - 1)
     pair.ana.flush()
@@ -211,7 +209,7 @@ def test_a_line_being_typed_is_deleted_only_with_its_instruction(
 def test_a_half_typed_value_is_not_a_change_even_if_it_parses(pair: PagePair) -> None:
     for shown in ("L(1, 6);", "L(1, 9);", "L(1, 95);"):
         old_row = next(row for row in pair.ana.lines if "L(1" in row)
-        pair.types(pair.ana, old_row, shown, is_hot=True)
+        pair.type(pair.ana, old_row, shown, is_hot=True)
     assert "L(1, 60)" in pair.meet()
     pair.ana.leave()
     assert "L(1, 95)" in pair.meet()
@@ -229,8 +227,8 @@ def test_only_the_last_of_successively_typed_lines_waits(pair: PagePair) -> None
         k = pair.ana.caret
         assert pair.ana.lines[k] == ""
         assert len(pair.ana.drafts) == 1 + (row in ("LOOP(2)", "BEEP(1, 440)"))
-    pair.sends(pair.ana)
-    pair.hears(pair.luz)
+    pair.send(pair.ana)
+    pair.hear(pair.luz)
     assert "W(2); F(3, 70); LOOP(2); BEEP(1, 440); END_LOOP; L(1, 60);" in " ".join(
         " ".join(pair.luz.lines).split()
     )
@@ -241,9 +239,9 @@ def test_only_the_last_of_successively_typed_lines_waits(pair: PagePair) -> None
 
 def test_a_value_typed_into_what_was_deleted_is_a_draft_again(pair: PagePair) -> None:
     apply_edits(pair.luz, [Delete((pair.find("R(1, 40)"),))])
-    pair.types(pair.ana, "R(1, 40)", "R(2, 40)")
+    pair.type(pair.ana, "R(1, 40)", "R(2, 40)")
     for page in (pair.luz, pair.ana) * 2:
-        pair.sends(page)
+        pair.send(page)
     assert "R(2, 40)" in pair.ana.lines
     assert "R(2, 40)" not in pair.meet()
     rows = [row + " " if row == "R(2, 40)" else row for row in pair.ana.lines]
@@ -254,18 +252,18 @@ def test_a_value_typed_into_what_was_deleted_is_a_draft_again(pair: PagePair) ->
 
 
 def test_a_reloaded_page_continues(pair: PagePair) -> None:
-    pair.types(pair.ana, "F(1, 80)", "F(2, 80)")
-    pair.types(pair.ana, "W(1);", "W(9)", is_hot=True)
+    pair.type(pair.ana, "F(1, 80)", "F(2, 80)")
+    pair.type(pair.ana, "W(1);", "W(9)", is_hot=True)
     stored_data = json.loads(json.dumps(pair.ana.store_data()))
-    pair.types(pair.luz, "L(1, 60)", "L(3, 60)")
-    pair.sends(pair.luz)
+    pair.type(pair.luz, "L(1, 60)", "L(3, 60)")
+    pair.send(pair.luz)
     pair.ana = Page.of("a", pair.program.news("a", -1, ""), stored_data)
     assert pair.ana.lines[pair.ana.caret] == "  W(9)"
     pair.ana.leave()  # no one has continued that line
     assert "F(2, 80)" in pair.meet()
     assert "W(1)" in pair.meet()
     assert "L(3, 60)" in " ".join(pair.ana.lines)
-    pair.types(pair.ana, "W(9)", "W(95)")
+    pair.type(pair.ana, "W(9)", "W(95)")
     assert "W(95)" in pair.meet()
 
 
@@ -274,8 +272,8 @@ def test_undone_changes_can_be_redone_after_a_reload(seed: int) -> None:
     """The reload comes before the computer has heard of the undo."""
     rng, two = Random(seed), PagePair()
     for k in range(rng.randint(1, 3)):
-        two.types(two.ana, f"F({k + 1}, 80)" if k else "F(1, 80)", f"F({k + 2}, 80)")
-        two.sends(two.ana)
+        two.type(two.ana, f"F({k + 1}, 80)" if k else "F(1, 80)", f"F({k + 2}, 80)")
+        two.send(two.ana)
     last_value = k + 2
     assert two.ana.undo()
     for _ in range(rng.randint(1, 2)):
@@ -288,14 +286,14 @@ def test_undone_changes_can_be_redone_after_a_reload(seed: int) -> None:
 
 
 def test_a_renamed_page_loses_and_duplicates_nothing(pair: PagePair) -> None:
-    pair.inserts(pair.ana, ROOT, pair.find("L(1, 60)"))
+    pair.insert(pair.ana, ROOT, pair.find("L(1, 60)"))
     pair.program.submit(pair.ana.pending_changes)  # and the answer is lost
-    pair.types(pair.ana, "F(1, 80)", "F(2, 80)")
+    pair.type(pair.ana, "F(1, 80)", "F(2, 80)")
     for time_s, name in enumerate("zyx", 2):
         stored_data = json.loads(json.dumps(pair.ana.store_data()))
         pair.ana = Page.of(name, pair.program.news(name, -1, ""), stored_data)
-        pair.types(pair.ana, f"L({time_s - 1}, 60)", f"L({time_s}, 60)")  # before the rest is sent
-        pair.types(pair.ana, f"W({time_s - 1})", f"W({time_s})")
+        pair.type(pair.ana, f"L({time_s - 1}, 60)", f"L({time_s}, 60)")  # before the rest is sent
+        pair.type(pair.ana, f"W({time_s - 1})", f"W({time_s})")
     assert pair.meet().count("BEEP(1, 440)") == 1
     assert all(change in pair.meet() for change in ("F(2, 80)", "L(4, 60)", "W(4)"))
 
@@ -303,18 +301,18 @@ def test_a_renamed_page_loses_and_duplicates_nothing(pair: PagePair) -> None:
 def test_a_copy_of_a_page_is_independent(pair: PagePair) -> None:
     data_before: list[Any] = [pair.ana.lines[:], data(pair.ana)]
     copy = pair.ana.copy()
-    pair.types(pair.ana, "F(1, 80)", "F(2, 80)")
-    pair.types(pair.ana, "W(1);", "W(", is_hot=True)
+    pair.type(pair.ana, "F(1, 80)", "F(2, 80)")
+    pair.type(pair.ana, "W(1);", "W(", is_hot=True)
     assert [copy.lines, data(copy)] == data_before
     pair.ana = copy
-    pair.types(pair.ana, "F(1, 80)", "F(3, 80)")
+    pair.type(pair.ana, "F(1, 80)", "F(3, 80)")
     assert "F(3, 80)" in pair.meet()
 
 
 FLAT_PROGRAM = "SI|S\n" + "".join(f"F({number}, 80)\n" for number in range(1, 6))
 
 
-def edits(page: Page, rng: Random) -> None:
+def edit_line(page: Page, rng: Random) -> None:
     """Put a line in, take one out or change one, as somebody types it."""
     rows = page.lines[:]
     k = rng.randrange(1, len(rows))
@@ -327,7 +325,7 @@ def edits(page: Page, rng: Random) -> None:
     page.leave()
 
 
-def retypes(page: Page, rng: Random) -> None:
+def retype(page: Page, rng: Random) -> None:
     """Give an instruction another value."""
     k = rng.randrange(1, len(page.lines))
     value = f"({rng.randrange(1, 99)},"
@@ -343,11 +341,11 @@ def program_of(page: Page) -> list[str]:
 def exchange(two: PagePair, message: str) -> None:
     """Send what Ana has changed, send it and lose the answer, or receive what is new."""
     if message == "send":
-        two.sends(two.ana)
+        two.send(two.ana)
     elif message == "lose":
         two.program.submit(two.ana.pending_changes)
     else:
-        two.hears(two.ana)
+        two.hear(two.ana)
 
 
 def list_shown_pages(seed: int, makes_copies: bool) -> list[Any]:
@@ -361,16 +359,16 @@ def list_shown_pages(seed: int, makes_copies: bool) -> list[Any]:
             for function in (
                 old_page.undo,
                 old_page.redo,
-                partial(edits, old_page, other_rng),
+                partial(edit_line, old_page, other_rng),
                 old_page.undo,
             ):
                 function()
         match rng.choice(("edit", "edit", "luz", "undo", "redo", "send", "lose", "hear")):
             case "edit":
-                edits(two.ana, rng)
+                edit_line(two.ana, rng)
             case "luz":
-                edits(two.luz, rng)
-                two.sends(two.luz)
+                edit_line(two.luz, rng)
+                two.send(two.luz)
             case "undo" | "redo" as does_back:
                 results.append(two.ana.undo() if does_back == "undo" else two.ana.redo())
             case message:
@@ -393,7 +391,7 @@ def test_text_typed_before_and_after_a_reload_is_in_the_program(seed: int) -> No
         typed_text = program_of(two.ana)
         match rng.choice(("edit", "edit", "send", "lose", "hear", "reload", "reload")):
             case "edit":
-                edits(two.ana, rng)
+                edit_line(two.ana, rng)
                 continue
             case "reload":
                 stored_data = json.loads(json.dumps(two.ana.store_data()))
@@ -413,15 +411,15 @@ def test_a_reload_shows_what_the_news_show(seed: int) -> None:
     for _ in range(60):
         match rng.choice(("edit", "retype", "retype", "luz", "luz", "lose", "hear", "reload")):
             case "edit":
-                edits(two.ana, rng)
+                edit_line(two.ana, rng)
             case "retype":
-                retypes(two.ana, rng)
+                retype(two.ana, rng)
             case "luz":
-                edits(two.luz, rng)
-                two.sends(two.luz)
+                edit_line(two.luz, rng)
+                two.send(two.luz)
             case "reload":
                 stored_data = json.loads(json.dumps(two.ana.store_data()))
-                two.hears(two.ana)
+                two.hear(two.ana)
                 reloaded_page = Page.of("a", two.program.news("a", -1, ""), stored_data)
                 assert reloaded_page.lines == two.ana.lines
                 two.ana = reloaded_page
@@ -436,7 +434,7 @@ def data(page: Page) -> Any:
 
 def test_a_page_with_a_different_tree_requests_the_whole_program(pair: PagePair) -> None:
     pair.ana.base.node_by_id[pair.find("F(1, 80)")].text = "F(9, 80)"  # whatever the cause
-    pair.hears(pair.ana)
+    pair.hear(pair.ana)
     assert pair.ana.is_astray
     pair.ana.receive(pair.program.news("a", -1, pair.ana.epoch))
     assert not pair.ana.is_astray
@@ -444,8 +442,8 @@ def test_a_page_with_a_different_tree_requests_the_whole_program(pair: PagePair)
 
 
 def test_a_redo_reverts_an_undo_until_the_next_change(pair: PagePair) -> None:
-    pair.types(pair.ana, "B(1, 40)", "B(9, 40)")
-    pair.types(pair.luz, "R(1, 40)", "R(5, 40)")
+    pair.type(pair.ana, "B(1, 40)", "B(9, 40)")
+    pair.type(pair.luz, "R(1, 40)", "R(5, 40)")
     text_before = pair.meet()
     assert not pair.ana.redo()
     for _ in range(2):
@@ -455,7 +453,7 @@ def test_a_redo_reverts_an_undo_until_the_next_change(pair: PagePair) -> None:
         assert pair.meet() == text_before
     assert pair.ana.undo()
     pair.meet()
-    pair.types(pair.ana, "L(1, 60)", "L(2, 60)")
+    pair.type(pair.ana, "L(1, 60)", "L(2, 60)")
     pair.meet()
     assert not pair.ana.redo()
 
@@ -465,7 +463,7 @@ def test_as_many_redos_as_undos_restore_everything(seed: int) -> None:
     rng, two = Random(seed), PagePair(FLAT_PROGRAM)
     texts = [two.meet()]
     for number in range(1, 6):
-        two.types(two.ana, f"F({number}, 80)", f"F({number}1, 80)")
+        two.type(two.ana, f"F({number}, 80)", f"F({number}1, 80)")
         texts.append(two.meet())
     for _ in range(4):
         count_back = rng.randrange(1, 5)

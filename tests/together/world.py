@@ -211,7 +211,7 @@ class World:
     def settle(self) -> None:
         """Everybody comes to an end, and hears all."""
         for pupil in self.pupils.values():
-            pupil.finishes()
+            pupil.finish()
         for _ in range(4):
             for name, pupil in self.pupils.items():
                 page = pupil.page
