@@ -47,7 +47,7 @@ class Holder:
     def clock(self) -> float:
         return self.now_s
 
-    def says(self, message: JsonMessage, after_s: float) -> None:
+    def say(self, message: JsonMessage, after_s: float) -> None:
         arrival_s = self.now_s + after_s
         if arrival_s < self.dies_s:
             insort(
@@ -65,7 +65,7 @@ class Holder:
         for message in self._reader.read_messages(data):
             if message["do"] == "beat":
                 self.beats += 1
-                self.says({"beat": True}, self._answer_s())
+                self.say({"beat": True}, self._answer_s())
 
     def recv(self, count: int) -> bytes:
         end_s = self.now_s + self._limit_s
@@ -108,7 +108,7 @@ def test_a_holder_that_answers_is_waited_for(monkeypatch: pytest.MonkeyPatch, se
     line = open_shared_connection(monkeypatch, holder)
     if seed % 2:
         for second_s in range(int(LONG_S)):
-            holder.says(SHOW_EVENT, second_s + rng.random())
+            holder.say(SHOW_EVENT, second_s + rng.random())
     assert listen_until_lost(line, holder, LONG_S) >= LONG_S and not line.has_ended
     assert holder.beats > LONG_S / (protocol.HEARTBEAT_S + POLL_INTERVAL_S) / 2
 
@@ -135,7 +135,7 @@ def test_a_slow_request_is_answered(monkeypatch: pytest.MonkeyPatch, takes_s: fl
     holder = Holder(lambda: 0.1)
     line = open_shared_connection(monkeypatch, holder)
     request: PendingRequest[EmptyReply] = line.begin(lambda session: session.name(b"Pia"))
-    holder.says(ANSWER_MESSAGE, takes_s)
+    holder.say(ANSWER_MESSAGE, takes_s)
     assert line.wait(request).status == OK
     assert holder.now_s - 100.0 >= takes_s
     assert (line.heard_count, line.early_bytes) == (9, b"\xfe")
@@ -178,11 +178,11 @@ def test_a_client_knows_its_holders_events_and_end(
             request: PendingRequest[Any] = line.begin(lambda _: message)  # noqa: B023 - at once
             requests.append((number, request, new_name))
         elif action == "event":
-            holder.says({**SHOW_EVENT, "ms": k}, 0)
+            holder.say({**SHOW_EVENT, "ms": k}, 0)
             progress_values.append(k)
         elif requests and action == "progress":
             answered_id, request, _ = rng.choice(requests)
-            holder.says({"id": answered_id, "done_bytes": k}, 0)
+            holder.say({"id": answered_id, "done_bytes": k}, 0)
             listen(POLL_INTERVAL_S)
             assert request.done_bytes == k and request.outcome is None
         elif requests:
@@ -190,7 +190,7 @@ def test_a_client_knows_its_holders_events_and_end(
             state = {"heard": k, "came": f"{k:02x}", "is_echoed": k % 2 == 0, "boot": k // 2}
             status = rng.choice((OK, OK, 72))
             values = {} if new_name or status != OK else HELLO_VALUES
-            holder.says(
+            holder.say(
                 {"id": answered_id, "status": status, "detail": k, "values": values, **state}, 0
             )
             listen(POLL_INTERVAL_S)
@@ -205,9 +205,9 @@ def test_a_client_knows_its_holders_events_and_end(
             assert (line.robot.name if line.robot else "") == name
     listen(1.0)
     assert events == progress_values
-    holder.says({**SHOW_EVENT, "ms": 99}, 0)
+    holder.say({**SHOW_EVENT, "ms": 99}, 0)
     is_port_lost = seed % 2 == 0
-    holder.says({"over": "gone" if is_port_lost else "ended", "why": "the cable"}, 0)
+    holder.say({"over": "gone" if is_port_lost else "ended", "why": "the cable"}, 0)
     with suppress(ConnectionLost):
         listen(POLL_INTERVAL_S)
     holder.is_gone = True

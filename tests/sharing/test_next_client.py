@@ -108,15 +108,15 @@ class Client:
         self.messages: list[Json] = []
         self.beats, self.has_detached = True, False
         self._number = 0
-        self.says({"tsc": __version__, "token": server.registration.token, "verb": verb})
+        self.say({"tsc": __version__, "token": server.registration.token, "verb": verb})
 
-    def says(self, message: Json) -> None:
+    def say(self, message: Json) -> None:
         with suppress(OSError):
             self.socket.send(protocol.encode_message(message))
 
-    def asks(self, action: str, **fields: object) -> None:
+    def ask(self, action: str, **fields: object) -> None:
         self._number += 1
-        self.says({"do": action, "id": self._number, "limit_ms": 6000, **fields})
+        self.say({"do": action, "id": self._number, "limit_ms": 6000, **fields})
 
     def look(self) -> None:
         with suppress(OSError, BlockingIOError):
@@ -142,7 +142,7 @@ class Desk:
     def step(self) -> None:
         for client in self.clients:
             if client.beats and self.line.robot_itself.now_ms % 200 < STEP_MS:
-                client.says({"do": "beat"})
+                client.say({"do": "beat"})
         for _ in range(3):  # requests that arrived, and their answers
             self.server._attend()
         self.line.step()
@@ -150,7 +150,7 @@ class Desk:
         for client in self.clients:
             client.look()
 
-    def steps(self, milliseconds: int) -> None:
+    def step_for(self, milliseconds: int) -> None:
         for _ in range(milliseconds // STEP_MS):
             self.step()
 
@@ -199,18 +199,18 @@ def send_request(rng: random.Random, client: Client, verb: str) -> None:
     if verb == "upload":
         is_detached = rng.random() < 0.2
         client.has_detached |= is_detached
-        client.asks("upload", **upload(text, is_detached))
+        client.ask("upload", **upload(text, is_detached))
     elif verb == "live":
         seconds = rng.choice((0.4, 60))
         code = image_of(f"SI|{MARK}F({seconds}, 30)").code
-        client.asks("live", code=code.hex(), kit=TINIBOT.fingerprint)
+        client.ask("live", code=code.hex(), kit=TINIBOT.fingerprint)
     else:
         fields_by_verb: dict[str, Json] = {"start": {"is_detached": False}, "trim": {"trim": ""}}
-        client.asks(verb, **fields_by_verb.get(verb, {}))
+        client.ask(verb, **fields_by_verb.get(verb, {}))
 
 
 def stop_and_leave(client: Client) -> None:
-    client.says({"do": "stop"})
+    client.say({"do": "stop"})
     client.socket.close()
 
 
@@ -229,36 +229,36 @@ END_ACTIONS: dict[str, Callable[[random.Random, Client], object]] = {
 
 def play_first_client(rng: random.Random, desk: Desk) -> str:
     client = desk.join(rng.choice(("upload", "run", "monitor", "python")))
-    desk.steps(rng.choice((20, 200)))
+    desk.step_for(rng.choice((20, 200)))
     for _ in range(rng.randint(1, 3)):
         send_request(rng, client, rng.choice((*REQUEST_NAMES, *STORED_PROGRAM_REQUESTS)))
-        desk.steps(rng.choice((0, 20, 40, 100, 400, 1500)))
+        desk.step_for(rng.choice((0, 20, 40, 100, 400, 1500)))
     if rng.random() < 0.6:  # during its run, or while it is under way
         for _ in range(rng.choice((1, 1, 3))):
             send_request(rng, client, rng.choice(("upload", "live")))
-        desk.steps(rng.choice((0, 20, 40, 60, 400)))
+        desk.step_for(rng.choice((0, 20, 40, 60, 400)))
     end_name = rng.choice([*END_ACTIONS])
     END_ACTIONS[end_name](rng, client)
     if end_name == "breaks off":
-        desk.steps(rng.choice((20, 300)))
+        desk.step_for(rng.choice((20, 300)))
         client.socket.close()
     robot = desk.line.robot_itself
     robot.codes()
     if rng.random() < 0.5:
-        desk.steps(rng.choice((60, 400, 900)))
+        desk.step_for(rng.choice((60, 400, 900)))
         return end_name
     if end_name != "is silent":
-        desk.steps(400)
+        desk.step_for(400)
         assert client.has_detached or not desk.line.session.is_running, f"{end_name}: not at once"
         assert len(robot.codes()) <= 1, f"{end_name}: more begins than what was under way"
-    desk.steps(2500)
+    desk.step_for(2500)
     if desk.line.session.is_running:
         assert client.has_detached, f"{end_name}: the run of a client that has gone goes on"
         other_client = desk.join("stop")
-        other_client.says({"do": "stop"})
-        desk.steps(400)
+        other_client.say({"do": "stop"})
+        desk.step_for(400)
         other_client.socket.close()
-        desk.steps(400)
+        desk.step_for(400)
     return end_name
 
 
@@ -266,16 +266,16 @@ def play_second_client(rng: random.Random, desk: Desk) -> tuple[list[str], list[
     """Return the second client's messages from its first run on, and the robot's actions."""
     robot = desk.line.robot_itself
     client = desk.join("run")
-    desk.steps(60)
+    desk.step_for(60)
     robot.did.clear()
     client.messages.clear()
     send_request(rng, client, "upload")
-    desk.steps(rng.choice((400, 1500, 3000)))
+    desk.step_for(rng.choice((400, 1500, 3000)))
     for _ in range(2):
         send_request(rng, client, rng.choice(REQUEST_NAMES))
-        desk.steps(rng.choice((400, 1500)))
-    client.says({"do": "stop"})
-    desk.steps(400)
+        desk.step_for(rng.choice((400, 1500)))
+    client.say({"do": "stop"})
+    desk.step_for(400)
     heard = [message for message in client.messages if "beat" not in message]
     begin_index = next((k for k, message in enumerate(heard) if "status" in message), 0)
     messages = [
@@ -332,12 +332,12 @@ def test_a_run_ends_with_the_client_that_started_it(
                 posted += [("JOINED", verb)] * (verb != protocol.LOOKING_VERB)
             elif end_kind == "starts":
                 is_detached = rng.random() < 0.2
-                client.asks("upload", **upload("SI|F(60, 50)", is_detached))
+                client.ask("upload", **upload("SI|F(60, 50)", is_detached))
                 owner = "itself" if is_detached else client
             elif end_kind == "asks":
-                client.asks("status")
+                client.ask("status")
             elif end_kind == "stops":
-                client.says({"do": "stop"})
+                client.say({"do": "stop"})
                 owner = ""
             else:
                 verb = verbs.pop(client)
@@ -346,7 +346,7 @@ def test_a_run_ends_with_the_client_that_started_it(
                     end_kind == "leaves" and verb != protocol.LOOKING_VERB
                 )
                 owner = "" if owner is client else owner
-            made_desk.steps(1600 if end_kind == "is silent" else 300)
+            made_desk.step_for(1600 if end_kind == "is silent" else 300)
             assert made_desk.line.session.is_running == (owner != ""), end_kind
             assert made_desk.line.posted_events == posted, end_kind
 
@@ -368,9 +368,9 @@ def test_a_client_that_reads_nothing_has_a_bounded_queue_or_is_dropped(
     )
     with desk(monkeypatch) as made_desk:
         client = made_desk.join("monitor")
-        made_desk.steps(60)
-        client.says({"do": "places"})
-        made_desk.steps(60)
+        made_desk.step_for(60)
+        client.say({"do": "places"})
+        made_desk.step_for(60)
         [served] = made_desk.server._clients
         served.peer.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, 4096)
         client.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
