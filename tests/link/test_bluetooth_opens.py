@@ -113,7 +113,7 @@ def loop(monkeypatch: pytest.MonkeyPatch) -> Iterator[event_loop.EventLoop]:
     bluetooth._connect_lock.cache_clear()
 
 
-def connects(loop: event_loop.EventLoop, device: Any) -> bluetooth.BluetoothPort:
+def connected_port(loop: event_loop.EventLoop, device: Any) -> bluetooth.BluetoothPort:
     port = bluetooth.BluetoothPort(loop, 9600)
     port.connect(device)
     return port
@@ -124,7 +124,7 @@ def check_next_client_works(loop: event_loop.EventLoop, device: Device) -> None:
     device.failing_stage = device.missing_uuid = ""
     notified_before = device.notify_count
     for _ in range(2):
-        port = connects(loop, device)
+        port = connected_port(loop, device)
         assert len(device.clients) == 1
         port.close()
         assert device.clients == []
@@ -144,7 +144,7 @@ def test_a_failed_open_releases_the_device(
         with monkeypatch.context() as patch, pytest.raises(PortError) as exception_info:
             if device.failure is None:
                 patch.setattr(bluetooth, "QUEUE_S", 0.1)
-            connects(loop, device)
+            connected_port(loop, device)
         assert exception_info.value.reason == reason or not reason
         assert device.clients == []
         check_next_client_works(loop, device)
@@ -157,7 +157,7 @@ def test_a_device_that_is_not_a_robot_is_released(
     device = Device()
     device.missing_uuid = missing_uuid
     with pytest.raises(PortError) as exception_info:
-        connects(loop, device)
+        connected_port(loop, device)
     assert exception_info.value.reason == errors.NO_ROBOT
     assert device.clients == []
     check_next_client_works(loop, device)
@@ -208,7 +208,7 @@ def test_a_device_that_does_not_answer_delays_others_no_longer_than_it_may(
         devices = [Device() for _ in range(3)]
         devices[0].failing_stage = stage
         with ThreadPoolExecutor(len(devices)) as pool:
-            opened = [pool.submit(connects, loop, device) for device in devices]
+            opened = [pool.submit(connected_port, loop, device) for device in devices]
         for device, future in zip(devices, opened, strict=True):
             failure = future.exception()
             if device.failing_stage:

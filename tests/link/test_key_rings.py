@@ -95,7 +95,7 @@ class Robot:
         values = SimpleNamespace(features=SEALS * self.has_seals, nonce=1)
         return cast(DeviceInfo, SimpleNamespace(id=1, name="TINI", values=values))
 
-    def does(self, exchange: Exchange[T]) -> Reply[T] | None:
+    def answer(self, exchange: Exchange[T]) -> Reply[T] | None:
         """Answer an exchange; return the result, or None if the link was lost."""
         try:
             request = next(exchange)
@@ -150,10 +150,10 @@ def test_a_robot_stays_its_owners_whatever_claims_were_lost(
         robot.loss, role = rng.choice((0.0, 0.3)), rng.choice((KEY_OWNER, KEY_TEACHER))
         robot.has_seals = rng.random() < 0.5  # it may have older firmware
         if rng.random() < 0.7:
-            robot.does(authority.claim(ring, robot.info, role))
+            robot.answer(authority.claim(ring, robot.info, role))
         else:
-            robot.does(authority.disown(ring, robot.info, role))
-        robot.does(authority.authenticate(ring, robot.info, NONCE, lambda: 0, is_needed=False))
+            robot.answer(authority.disown(ring, robot.info, role))
+        robot.answer(authority.authenticate(ring, robot.info, NONCE, lambda: 0, is_needed=False))
         kept_keys = {key.key for key in ring.keys_of_robot(1)}
         assert {*robot.keys.values()} <= kept_keys
         robot.loss = 0.0  # before the claim, another client has connected
@@ -161,7 +161,7 @@ def test_a_robot_stays_its_owners_whatever_claims_were_lost(
             key_proof = authority.authenticate(
                 ring, robot.info, NONCE, lambda: 0, role, is_needed=False
             )
-            reply = robot.does(key_proof)
+            reply = robot.answer(key_proof)
             assert reply is not None and reply.status == OK
             [own_key] = [key for key in ring.keys_of_robot(1) if key.key == robot_key]
             sealing_keys |= {robot_key} if robot.has_seals else set()

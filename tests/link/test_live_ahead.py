@@ -70,7 +70,7 @@ def test_a_live_line_does_not_run_before_its_frame_ends(code: bytes) -> None:
     for runs in (False, True):
         robot = open_session()
         if runs:
-            robot.happens("r")
+            robot.let_happen("r")
         assert not robot.step(10, live_data(code)[:-1]).did
         actions = robot.step(20, b"\0").did
         assert (actions[0] == "END") == runs
@@ -107,10 +107,10 @@ def test_a_button_or_a_fault_in_between_makes_prepared_code_stale(
 ) -> None:
     robot = open_session()
     if verb:
-        robot.happens(verb)
+        robot.let_happen(verb)
     data = live_data(CODES[0])
     assert not robot.step(10, data[:-1]).did
-    robot.happens(interruption, 65)
+    robot.let_happen(interruption, 65)
     step = robot.step(20, data[-1:])
     assert not [row for row in step.did if "START" in row]
     assert step.sent

@@ -58,7 +58,7 @@ class BadLine:
         self.packets = [(-9, False), (-9, False)]  # time and fate of the last one in each direction
         self.dead_ms = rng.choice((500, 1500, LINE_DEAD_MS))
 
-    def takes(self, data: bytes, now_ms: int, is_answer: bool = False) -> bytes:
+    def carry(self, data: bytes, now_ms: int, is_answer: bool = False) -> bytes:
         if not data:
             return data
         if self.is_bursty:
@@ -85,14 +85,14 @@ def polled_when_due(session: Session, now_ms: int) -> bytes:
 
 
 def turn(session: Session, robot: HostFirmware, line: BadLine) -> None:
-    data = line.takes(polled_when_due(session, robot.now_ms), robot.now_ms)
+    data = line.carry(polled_when_due(session, robot.now_ms), robot.now_ms)
     line.under_way.append((robot.now_ms + line.late_ms, data))
     due_ms, data = line.under_way[0]
     is_due = due_ms <= robot.now_ms
     if is_due:
         line.under_way.popleft()
     sent_bytes = robot.wait(10 if line.late_ms else 1, data if is_due else b"")
-    session.receive(line.takes(sent_bytes, robot.now_ms, True), robot.now_ms)
+    session.receive(line.carry(sent_bytes, robot.now_ms, True), robot.now_ms)
 
 
 def finish_request(

@@ -48,7 +48,7 @@ def check(seed: int) -> str:
         for _ in range(rng.randint(2, 5))
     ]
     wire.losses = rng.choice((NO_LOSSES, Losses(0.3, 0.3), Losses(0, 1)))
-    wire.turns(rng.choice((0, 0, 1, 2, 3, 5, 8, 13, 30)))
+    wire.take_turns(rng.choice((0, 0, 1, 2, 3, 5, 8, 13, 30)))
     if stop_kind == "the button" and not is_driving(robot):  # it would start the stored program
         stop_kind = "zeros"
     open_ones = [
@@ -59,7 +59,7 @@ def check(seed: int) -> str:
         assert all(pending_request.outcome is not None for pending_request in pending_requests), (
             f"seed {seed}"
         )
-        wire.turns(wire.late_ms + 3)  # until it is there
+        wire.take_turns(wire.late_ms + 3)  # until it is there
         sent_bytes = b""
     else:
         sent_bytes = STOPS[stop_kind](robot, session)
@@ -67,9 +67,9 @@ def check(seed: int) -> str:
     robot.did.clear()
     wire.losses = rng.choice((NO_LOSSES, Losses(0, 0.3)))
     wire.turn(b"" if rng.random() < 0.5 else sent_bytes)  # the event, if the session heard it
-    wire.turns(rng.choice((1, 5, 200)))
+    wire.take_turns(rng.choice((1, 5, 200)))
     wire.losses = NO_LOSSES
-    wire.turns(wire.late_ms)
+    wire.take_turns(wire.late_ms)
     robot.step(b"".join(wire.under_way))
     robot.talk(session, 6000)
     outcomes = [request.outcome for request in pending_requests]
@@ -97,7 +97,7 @@ def test_requests_of_others_leave_a_run_to_its_client(ask: Ask) -> None:
     assert robot.until(session, ask(session)) == OK
     assert is_driving(robot) and session.is_running and session.run == run is not None
     session.end_run(run, robot.now_ms)
-    wire.turns(100)
+    wire.take_turns(100)
     assert not is_driving(robot)
 
 

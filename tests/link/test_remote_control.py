@@ -63,7 +63,7 @@ class Hand:
         self._requests = [session.press()]
         self._sent_ms = 0
 
-    def holds(self, held_state: RemoteState) -> None:
+    def hold(self, held_state: RemoteState) -> None:
         self.held_state = held_state
         self._say()
 
@@ -113,7 +113,7 @@ def test_held_keys_are_read_and_released_ones_are_not() -> None:
         KEY_A,
         NOTHING_PRESSED,
     ):
-        remote.holds(held_state)
+        remote.hold(held_state)
         remote.talk(40)
         assert remote.robot.remote() == remote_readings(held_state)
         remote.talk(700)
@@ -126,10 +126,10 @@ def test_key_messages_are_sent_every_200_ms_only_while_keys_are_held() -> None:
     remote = hand()
     remote.talk(3000)
     assert remote.words == []
-    remote.holds(KEY_UP)
+    remote.hold(KEY_UP)
     remote.talk(2001)
     assert len(remote.words) == 11
-    remote.holds(NOTHING_PRESSED)
+    remote.hold(NOTHING_PRESSED)
     remote.talk(3000)
     assert len(remote.words) == 12
     numbers = [seq for seq, _ in remote.words]
@@ -139,14 +139,14 @@ def test_key_messages_are_sent_every_200_ms_only_while_keys_are_held() -> None:
 def test_a_key_message_waits_only_for_the_answer_to_the_previous_one() -> None:
     remote = hand()
     for held_state in (KEY_UP, NOTHING_PRESSED, KEY_A, KEY_UP, NOTHING_PRESSED):
-        remote.holds(held_state)
+        remote.hold(held_state)
         remote.talk(5)
         assert remote.words[-1][1] == held_state
     remote.is_lossy = lambda: True
     count = len(remote.words)
-    remote.holds(KEY_UP)
+    remote.hold(KEY_UP)
     remote.talk(1)
-    remote.holds(NOTHING_PRESSED)
+    remote.hold(NOTHING_PRESSED)
     remote.talk(GAP_MS - 1)
     assert [word for _, word in remote.words[count:]] == [KEY_UP]
     remote.talk(1)
@@ -160,10 +160,10 @@ def test_key_messages_alone_keep_an_attached_program_alive() -> None:
         == OK
     )
     remote.session.sends_heartbeat = lambda: False
-    remote.holds(KEY_UP)
+    remote.hold(KEY_UP)
     remote.talk(3000)
     assert remote.robot.did[-1].endswith("MOTORS 40 40")
-    remote.holds(NOTHING_PRESSED)
+    remote.hold(NOTHING_PRESSED)
     remote.talk(1100)
     assert remote.robot.did[-1].endswith("FAULTED"), "and nothing else does"
 
@@ -176,14 +176,14 @@ def test_a_lost_line_releases_all_keys_within_half_a_second(seed: int) -> None:
     remote = hand()
     for _ in range(100):
         remote.is_lossy = lambda: False
-        remote.holds(rng.choice([KEY_UP, remote_state_of(["A", "LEFT"]), RemoteState(0, 50, -50)]))
+        remote.hold(rng.choice([KEY_UP, remote_state_of(["A", "LEFT"]), RemoteState(0, 50, -50)]))
         remote.talk(rng.randint(60, 400))
         assert remote.robot.remote() == remote_readings(remote.held_state)
         remote.is_lossy = lambda: True
         remote.talk(HOLD_MS)
         assert remote.robot.remote() == RELEASED_READINGS
         remote.is_lossy = lambda: False
-        remote.holds(NOTHING_PRESSED)
+        remote.hold(NOTHING_PRESSED)
         remote.talk(250)
 
 
@@ -196,13 +196,13 @@ def test_keys_work_on_a_line_that_loses_three_of_ten_packets(seed: int) -> None:
     read_count = look_count = 0
     for _ in range(40):
         remote.is_lossy = lambda: rng.random() < 0.3
-        remote.holds(rng.choice([KEY_UP, KEY_A, remote_state_of(["DOWN", "B"], 10, 20)]))
+        remote.hold(rng.choice([KEY_UP, KEY_A, remote_state_of(["DOWN", "B"], 10, 20)]))
         remote.talk(300)
         for _ in range(20):
             remote.talk(50)
             look_count += 1
             read_count += remote.robot.remote() == remote_readings(remote.held_state)
-        remote.holds(NOTHING_PRESSED)
+        remote.hold(NOTHING_PRESSED)
         remote.talk(HOLD_MS)
         for _ in range(10):
             assert remote.robot.remote() == RELEASED_READINGS
@@ -218,7 +218,7 @@ def test_rapidly_changing_keys_work_on_a_bad_line(seed: int) -> None:
     remote = hand()
     remote.is_lossy = lambda: rng.random() < 0.3
     for _ in range(300):
-        remote.holds(RemoteState(rng.randrange(64), rng.randint(-100, 100), rng.randint(-100, 100)))
+        remote.hold(RemoteState(rng.randrange(64), rng.randint(-100, 100), rng.randint(-100, 100)))
         remote.talk(rng.randint(1, 60))
     remote.is_lossy = lambda: False
     remote.talk(250)
@@ -254,12 +254,12 @@ def test_keys_of_two_clients_on_one_line_combine() -> None:
 @pytest.mark.parametrize("text", ["SI|SHOW(1)", "SI|" + "SHOW(1);" * 60], ids=["short", "long"])
 def test_an_upload_succeeds_beside_keys_which_are_read_afterwards(text: str) -> None:
     remote = hand()
-    remote.holds(KEY_UP)
+    remote.hold(KEY_UP)
     remote.talk(100)
     request = remote.session.upload(image(text))
     while request.outcome is None:
         remote.talk(1)
-        remote.holds(random.Random(remote.robot.now_ms).choice([KEY_UP, KEY_A, KEY_LEFT]))
+        remote.hold(random.Random(remote.robot.now_ms).choice([KEY_UP, KEY_A, KEY_LEFT]))
         assert remote.robot.now_ms < 30_000
     assert request.outcome.status == OK
     remote.talk(250)
@@ -272,7 +272,7 @@ def test_endless_keys_leave_other_requests_their_turn() -> None:
     for k in range(1500):
         if k % 100 == 0:
             requests.append(remote.session.status())
-        remote.holds(RemoteState(0, k % 101, 0))
+        remote.hold(RemoteState(0, k % 101, 0))
         remote.talk(1)
     assert len(requests) == 15
     assert all(request.outcome and request.outcome.status == OK for request in requests)
@@ -283,7 +283,7 @@ def test_endless_requests_leave_keys_their_turn() -> None:
     remote = hand()
     waiting_requests = [remote.session.status() for _ in range(3)]
     for held_state in (KEY_UP, KEY_A, NOTHING_PRESSED, KEY_LEFT):
-        remote.holds(held_state)
+        remote.hold(held_state)
         for _ in range(300):
             waiting_requests = [request for request in waiting_requests if request.outcome is None]
             waiting_requests += [remote.session.status() for _ in range(3 - len(waiting_requests))]
@@ -329,7 +329,7 @@ def test_keys_are_sent_between_retries_of_a_waiting_request() -> None:
     name = remote.session.name(b"Ana")
     remote.talk(300)
     for held_state in (KEY_UP, NOTHING_PRESSED, KEY_A, NOTHING_PRESSED):
-        remote.holds(held_state)
+        remote.hold(held_state)
         remote.talk(60)
         assert remote.robot.remote() == remote_readings(held_state)
     while name.outcome is None:
@@ -347,14 +347,14 @@ def test_a_stop_releases_all_keys_and_keys_do_not_release_the_latch() -> None:
         remote.robot.until(remote.session, remote.session.upload(image(DRIVE_PROGRAM), saves=False))
         == OK
     )
-    remote.holds(KEY_UP)
+    remote.hold(KEY_UP)
     remote.talk(300)
     remote.session.stop(remote.robot.now_ms)
     remote.held_state = NOTHING_PRESSED
     remote.talk(300)
     assert remote.robot.is_latched
     action_count = len(remote.robot.did)
-    remote.holds(KEY_UP)
+    remote.hold(KEY_UP)
     remote.talk(2000)
     assert remote.robot.is_latched and len(remote.robot.did) == action_count
     status = remote.session.status()
@@ -414,7 +414,7 @@ def test_keys_held_before_a_stop_are_released_after_it(seed: int) -> None:
 
 def test_a_program_starts_without_held_keys() -> None:
     remote = hand()
-    remote.holds(KEY_UP)
+    remote.hold(KEY_UP)
     remote.talk(60)
     assert remote.robot.remote() == remote_readings(KEY_UP)
     check_nothing_held_at_start(remote.session, remote.robot)
@@ -434,7 +434,7 @@ def check_nothing_held_at_start(session: Session, robot: HostFirmware) -> None:
 
 def test_keys_work_again_after_a_lost_link_is_restored() -> None:
     remote = hand()
-    remote.holds(KEY_UP)
+    remote.hold(KEY_UP)
     remote.talk(60)
     remote.is_lossy = lambda: True
     remote.talk(6000)

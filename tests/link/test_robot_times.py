@@ -56,9 +56,9 @@ def test_detached_and_button_started_programs_continue(name: str) -> None:
     if name == "START":
         cpp.step(20, encode_frame(Frame(7, 3, 10, b"\x40")))
     elif name == "button":
-        cpp.happens("b")
+        cpp.let_happen("b")
         cpp.step(20)
-        cpp.happens("r")
+        cpp.let_happen("r")
     assert ends_at(cpp, 30, 5000) is None
 
 
@@ -67,7 +67,9 @@ def test_a_long_silence_is_not_taken_for_a_short_one() -> None:
     cpp = robot_with_session()
     for now_ms in range(0, 200_000, 500):
         sent_bytes = cpp.step(now_ms).sent
-        is_taken = cpp.happens("s", 1) or (cpp.step(now_ms).sent == b"\0" and cpp.happens("s", 1))
+        is_taken = cpp.let_happen("s", 1) or (
+            cpp.step(now_ms).sent == b"\0" and cpp.let_happen("s", 1)
+        )
         assert is_taken and (not sent_bytes or now_ms < LISTEN_MS + 1000), now_ms
 
 
@@ -143,14 +145,14 @@ def test_a_slow_reply_line_loses_no_answer() -> None:
 def test_a_robot_sends_events_only_to_listeners() -> None:
     cpp = cpp_link()
     cpp.begin(kit=KIT)
-    assert cpp.happens("s", 1) and not cpp.step(0).sent  # no HELLO has been sent
+    assert cpp.let_happen("s", 1) and not cpp.step(0).sent  # no HELLO has been sent
     cpp = robot_with_session()
-    assert cpp.happens("s", 1)
-    assert not cpp.happens("s", 2)  # the last one has not been sent yet, so it is repeated
+    assert cpp.let_happen("s", 1)
+    assert not cpp.let_happen("s", 2)  # the last one has not been sent yet, so it is repeated
     assert cpp.step(LISTEN_MS - 1).sent
     cpp.step(LISTEN_MS)
-    assert cpp.happens("s", 3) and cpp.happens("s", 3)
-    cpp.happens("d")
+    assert cpp.let_happen("s", 3) and cpp.let_happen("s", 3)
+    cpp.let_happen("d")
     assert not cpp.step(LISTEN_MS + 5).sent
-    cpp.happens("b")
+    cpp.let_happen("b")
     assert cpp.step(LISTEN_MS + 10).sent  # it always reports that it was stopped

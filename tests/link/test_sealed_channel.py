@@ -56,11 +56,11 @@ class SealedWorld(World):
         super().__init__(cpp, rng, 0, 0)
         largest = LARGE_FRAME if cpp.is_large else SMALL_FRAME
         self.line = (payload_bytes(largest, is_sealed=True) - 1) // 3 * 3
-        cpp.happens("o", OWNERS | SEALS)
+        cpp.let_happen("o", OWNERS | SEALS)
         self.reconnect()
         claim = self.session.claim(KEY_OWNER)
         self.run(None, 1000)
-        while not cpp.happens("h"):  # until the claim arrives
+        while not cpp.let_happen("h"):  # until the claim arrives
             self.run(None, 200)
         self.run(claim)
         assert claim.outcome and claim.outcome.status == 0

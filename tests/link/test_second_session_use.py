@@ -66,15 +66,15 @@ def first_use(rng: random.Random) -> Wire:
     wire.session.tells_starts = True
     if rng.random() < 0.7:  # it is open, and heartbeats continue
         wire.session.hello()
-        wire.turns(300)
+        wire.take_turns(300)
     for _ in range(rng.randint(1, 4)):
         for _ in range(rng.randint(0, 3)):
             rng.choice(ACTING_REQUESTS if rng.random() < 0.6 else OTHER_REQUESTS)(wire.session)
         wire.losses = rng.choice((NO_LOSSES, Losses(0.3, 0.3), Losses(0.9, 0.9), Losses(0, 1)))
-        wire.turns(rng.choice((1, 3, 8, 30, 300)))
+        wire.take_turns(rng.choice((1, 3, 8, 30, 300)))
         end_first_use(rng, wire)
     wire.losses = NO_LOSSES
-    wire.turns(wire.late_ms)
+    wire.take_turns(wire.late_ms)
     wire.robot.step(b"".join(wire.under_way))
     wire.under_way.clear()
     return wire
@@ -195,7 +195,7 @@ def check(seed: int) -> str:
 def open_wire(rng: random.Random) -> Wire:
     wire = Wire(rng)
     wire.session.hello()
-    wire.turns(300)
+    wire.take_turns(300)
     return wire
 
 

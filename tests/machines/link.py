@@ -72,8 +72,8 @@ class CppLink:
         action_text, _ = first_text(rest)
         return Step(sent_bytes, action_text.decode().splitlines())
 
-    def happens(self, letter: str, value: int = 0) -> bool:
-        """Something happens to the robot: done, fault, show, button, run by the button, wait."""
+    def let_happen(self, letter: str, value: int = 0) -> bool:
+        """Let something happen to the robot: done, fault, show, button, run by the button, wait."""
         return bool(self.ask(b"R", letter.encode() + pack("<I", value & 0xFFFFFFFF))[0])
 
     def packets(self, stream: Sequence[tuple[int, int]], held_ms: int = 0) -> list[str]:

@@ -139,7 +139,7 @@ class Computer(Protocol):
 
 
 class Robot(Protocol):
-    def happens(self, words: list[str]) -> None: ...
+    def let_happen(self, words: list[str]) -> None: ...
     def step(self, now_ms: int, data: bytes, is_late: bool) -> Step: ...
 
 
@@ -158,7 +158,7 @@ def play(rows: Iterable[str], computer: Computer, robot: Robot) -> list[str]:
         if words[0] == "host":
             computer.ask(words[1:])
         elif words[0] == "robot":
-            robot.happens(words[1:])
+            robot.let_happen(words[1:])
         elif words[0] == "lose":
             losses_by_side[words[1]] += 1
             continue
@@ -362,13 +362,13 @@ class CppSide:
         self.cpp = cpp
         cpp.begin(kit=KIT)
 
-    def happens(self, words: list[str]) -> None:
+    def let_happen(self, words: list[str]) -> None:
         letters = {"done": "d", "fault": "f", "show": "s", "button": "b", "released": "r",
                    "busy": "w", "saving": "k", "at": "a", "tells": "o", "off": "!"}  # fmt: skip
         if letters[words[0]] == "!":
             self.cpp.begin(kit=KIT, epoch=77)
         else:
-            self.cpp.happens(letters[words[0]], int(words[1]) if len(words) > 1 else 0)
+            self.cpp.let_happen(letters[words[0]], int(words[1]) if len(words) > 1 else 0)
 
     def step(self, now_ms: int, data: bytes, is_late: bool) -> Step:
         return self.cpp.step(now_ms, data, is_late)
@@ -402,7 +402,7 @@ class WrittenSide:
         return self._rows(self.now_ms, "tells", "outcome")
 
     # Frames from the robot.
-    def happens(self, words: list[str]) -> None: ...
+    def let_happen(self, words: list[str]) -> None: ...
     def step(self, now_ms: int, data: bytes, is_late: bool) -> Step:
         actions = [row.removeprefix("did ") for row in self._rows(now_ms, "did")]
         return Step(self._data(now_ms, "<"), actions)

@@ -73,6 +73,6 @@ class Wire:
         if self.rng.random() >= self.losses.to_session:
             self.session.receive(sent_bytes, self.robot.now_ms)
 
-    def turns(self, count: int) -> None:
+    def take_turns(self, count: int) -> None:
         for _ in range(count):
             self.turn()
