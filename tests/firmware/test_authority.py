@@ -32,7 +32,7 @@ DISCONNECTED = 8  # the STATE pin of a module
 def test_a_stranger_can_only_watch_and_stop() -> None:
     table, keys = OwnedRobot(), Keys()
     owner = table.claim_session(keys)
-    assert table.tries(owner) == "OK"
+    assert table.try_to_drive(owner) == "OK"
     stranger = table.session(nonce=3)
     assert owner_of(table, stranger) == OWNED_BY_OTHER
     for is_open in (stranger.ping(), stranger.identify()):
@@ -48,7 +48,7 @@ def test_a_stranger_can_only_watch_and_stop() -> None:
 def test_every_request_is_classified_by_authority() -> None:
     """Requests that act and are not listed here need authority, and the owner's run continues."""
     table, keys = OwnedRobot(), Keys()
-    assert table.tries(table.claim_session(keys)) == "OK"
+    assert table.try_to_drive(table.claim_session(keys)) == "OK"
     stranger = table.session(nonce=3)
     assert owner_of(table, stranger) == OWNED_BY_OTHER
     for message in BY_NAME.values():
@@ -144,7 +144,7 @@ def test_wrong_keys_do_not_affect_the_owner() -> None:
         assert table.outcome(thief, thief.start()) == "WRONG_KEY"
     owner = table.session(keys, nonce=9)
     began_ms = table.robot.now_ms
-    assert table.tries(owner) == "OK"
+    assert table.try_to_drive(owner) == "OK"
     assert table.robot.now_ms - began_ms < 500
 
 
@@ -236,7 +236,7 @@ def send_forged_frames(frames: int, seed: int) -> int:
         table.robot.did.clear()
     if table.robot.memory() != memory:
         accepted_count += 1
-    assert table.tries(table.session(keys, nonce=5)) == "OK"
+    assert table.try_to_drive(table.session(keys, nonce=5)) == "OK"
     return accepted_count
 
 

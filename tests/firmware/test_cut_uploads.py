@@ -157,19 +157,19 @@ class Line:
         self.robot.wait(200)
         self.epoch = self.seq = 0
         self.heard = b""
-        self.says_hello()
-        self.asks("CLEAR")
+        self.say_hello()
+        self.ask("CLEAR")
 
-    def asks(self, name: str, payload: bytes = b"") -> int:
+    def ask(self, name: str, payload: bytes = b"") -> int:
         """Send a frame; return the status of its answer."""
         self.seq += 1
         number = BY_NAME[name].number
         frame = encode_frame(Frame(number, self.seq, self.epoch, payload))
-        answers = [frame for frame in self.hears(b"\0" + frame, 20) if frame.seq == self.seq]
+        answers = [frame for frame in self.exchange(b"\0" + frame, 20) if frame.seq == self.seq]
         assert [frame.number for frame in answers] == [number], answers
         return answers[0].payload[0]
 
-    def hears(self, data: bytes, milliseconds: int) -> list[Frame]:
+    def exchange(self, data: bytes, milliseconds: int) -> list[Frame]:
         sent_bytes = self.heard + self.robot.wait(milliseconds, data)
         *packets, self.heard = sent_bytes.split(b"\0")
         frames = [frame for frame in map(decode_frame, packets) if frame is not None]
@@ -177,44 +177,44 @@ class Line:
             self.epoch = frames[-1].epoch
         return [frame for frame in frames if frame.is_reply]
 
-    def says_hello(self, nonce: bytes = b"abcd") -> None:
+    def say_hello(self, nonce: bytes = b"abcd") -> None:
         kit = KIT.fingerprint.to_bytes(2, "little")
-        assert self.asks("HELLO", bytes((MAJOR, MINOR, 2, 0)) + kit + nonce) == OK
+        assert self.ask("HELLO", bytes((MAJOR, MINOR, 2, 0)) + kit + nonce) == OK
 
 
 def push_button(line: Line) -> None:
     line.robot.push()
-    line.hears(b"", 30)
+    line.exchange(b"", 30)
 
 
 # Requests that need the memory of a program, or end earlier requests.
 REQUESTS_THAT_END_UPLOAD: dict[str, Callable[[Line], object]] = {
-    "a line": lambda line: line.hears(TYPED_LINE, 150),
-    "a line for the button": lambda line: line.hears(TYPED_LINE.replace(b"SI", b"SB"), 150),
-    "a live line": lambda line: line.asks("LIVE", bytes([RUN]) + image_of("SI|B(9, 40)").code),
-    "a program": lambda line: line.asks("PROGRAM", bytes([RUN]) + image_of("SI|B(9, 50)").code),
-    "an upload": lambda line: line.asks(
+    "a line": lambda line: line.exchange(TYPED_LINE, 150),
+    "a line for the button": lambda line: line.exchange(TYPED_LINE.replace(b"SI", b"SB"), 150),
+    "a live line": lambda line: line.ask("LIVE", bytes([RUN]) + image_of("SI|B(9, 40)").code),
+    "a program": lambda line: line.ask("PROGRAM", bytes([RUN]) + image_of("SI|B(9, 50)").code),
+    "an upload": lambda line: line.ask(
         "BEGIN", bytes([RUN]) + bytes_of(SECOND_IMAGE)[2:CHECKSUM_OFFSET]
     ),
-    "a start": lambda line: line.asks("START", bytes(1)),
-    "an undo": lambda line: line.asks("UNDO"),
-    "a breakpoint": lambda line: line.asks("BREAK", bytes(2)),
-    "an abort": lambda line: line.asks("ABORT"),
+    "a start": lambda line: line.ask("START", bytes(1)),
+    "an undo": lambda line: line.ask("UNDO"),
+    "a breakpoint": lambda line: line.ask("BREAK", bytes(2)),
+    "an abort": lambda line: line.ask("ABORT"),
     "the button": push_button,
-    "another computer": lambda line: line.says_hello(b"efgh"),
-    "zeros": lambda line: line.hears(STOP, 5),
-    "a stop": lambda line: line.hears(
+    "another computer": lambda line: line.say_hello(b"efgh"),
+    "zeros": lambda line: line.exchange(STOP, 5),
+    "a stop": lambda line: line.exchange(
         b"\0" + encode_frame(Frame(BY_NAME["STOP"].number, 200, line.epoch)), 5
     ),
-    "a typed stop": lambda line: line.hears(b"S\n", 200),
+    "a typed stop": lambda line: line.exchange(b"S\n", 200),
 }
 # Requests during which an upload continues.
 REQUESTS_DURING_UPLOAD: dict[str, Callable[[Line], object]] = {
-    "a ping": lambda line: line.asks("PING"),
-    "a status": lambda line: line.asks("STATUS"),
-    "an identify": lambda line: line.asks("IDENTIFY"),
-    "a wrong line": lambda line: line.hears(b"F(1,\n", 100),
-    "a wrong live line": lambda line: line.asks("LIVE", bytes([RUN, 255])),
+    "a ping": lambda line: line.ask("PING"),
+    "a status": lambda line: line.ask("STATUS"),
+    "an identify": lambda line: line.ask("IDENTIFY"),
+    "a wrong line": lambda line: line.exchange(b"F(1,\n", 100),
+    "a wrong live line": lambda line: line.ask("LIVE", bytes([RUN, 255])),
 }
 ROBOT_KINDS = {"a mega": HostFirmware, "an uno": SmallRobot}
 
@@ -247,7 +247,7 @@ def cut_by(
         CUT_BEFORE_LAST_PIECE: len(frames) - 2,
         CUT_BEFORE_COMMIT: len(frames) - 1,
     }[cut]
-    assert {line.asks(*frame) for frame in frames[:count]} == {OK}
+    assert {line.ask(*frame) for frame in frames[:count]} == {OK}
     act_between(line)
     return line, frames[count:]
 
@@ -271,9 +271,9 @@ def test_an_interrupted_upload_is_over(
     if request_name == "an upload":
         # a shorter payload
         rest = rest[1:] if cut == CUT_BEFORE_LAST_PIECE else [("COMMIT", bytes(4))]
-    statuses = [line.asks(*frame) for frame in rest]
+    statuses = [line.ask(*frame) for frame in rest]
     assert OK not in statuses, (statuses, rest)
-    assert {twin.asks("PING") for _ in rest} == {OK}
+    assert {twin.ask("PING") for _ in rest} == {OK}
     for one_line in (line, twin):
         one_line.robot.wait(300)
     assert line.robot.did == twin.robot.did
@@ -287,7 +287,7 @@ def test_an_upload_continues_beside_requests_that_need_no_memory(
     memory: bytes, request_name: str, cut: str, kind: str
 ) -> None:
     line, rest = cut_by(kind, memory, cut, REQUESTS_DURING_UPLOAD[request_name])
-    assert [line.asks(*frame) for frame in rest] == [OK] * len(rest)
+    assert [line.ask(*frame) for frame in rest] == [OK] * len(rest)
     assert line.robot.codes() == [SECOND_IMAGE.code]
 
 

@@ -57,7 +57,7 @@ class End:
         assert self.table.outcome(session, session.name(NAME)) == "OK"
         self.keys.stored_keys = [key._replace(name=NAME.decode()) for key in self.keys.stored_keys]
 
-    def passes(self, milliseconds: int, data: bytes = b"") -> bytes:
+    def pass_time(self, milliseconds: int, data: bytes = b"") -> bytes:
         return self.table.robot.wait(milliseconds, data)
 
     def session(self, nonce: int, keys: Keys, place: str = "") -> Session:
@@ -90,19 +90,19 @@ class Between:
         self.waits_ms = rng.choice((0, 0, 300, 1900, 2500, 4000))
         self.zeros_ms: int | None = None
 
-    def hears(self, data: bytes, now_ms: int) -> bytes:
+    def reply_to(self, data: bytes, now_ms: int) -> bytes:
         """Return the bytes that the computer receives in reply to `data`."""
         replies = b""
         if b"\0\0\0\0" in data:
             if not self.cuts_stops:
-                return self.end.passes(20, data)
+                return self.end.pass_time(20, data)
             if self.zeros_ms is None:
                 self.zeros_ms = now_ms
         for packet in filter(None, data.split(b"\0")):
             frame = decode_frame(packet)
             assert frame
             if self.passes_on(frame):
-                replies += self.change_answers(self.end.passes(20, b"\0" + packet + b"\0"))
+                replies += self.change_answers(self.end.pass_time(20, b"\0" + packet + b"\0"))
             else:
                 self.epoch = frame.epoch
                 replies += self.pretended_answer(frame)
@@ -154,7 +154,7 @@ def talk(attacker: Between, session: Session, request: PendingRequest[Any] | Non
     now_ms, end_ms = 0, LIMIT_MS
     while now_ms < end_ms:
         data = session.poll(now_ms)
-        replies = attacker.hears(data, now_ms) if data else b""
+        replies = attacker.reply_to(data, now_ms) if data else b""
         session.receive(replies, now_ms + 1)
         names += [event.name for event in session.events()]
         if (request is not None and request.outcome) or {"STOPPED", "LOST"} & set(names):
@@ -166,8 +166,10 @@ def talk(attacker: Between, session: Session, request: PendingRequest[Any] | Non
 
 def state_of(end: End) -> int:
     """Return the state of the robot, which anybody may request."""
-    end.passes(20, b"\0" + encode_frame(Frame(HELLO, 1, 0, bytes([MAJOR, *bytes(5), 1, 2, 3, 4]))))
-    replies = end.passes(20, b"\0" + encode_frame(Frame(STATUS, 2, 0)))
+    end.pass_time(
+        20, b"\0" + encode_frame(Frame(HELLO, 1, 0, bytes([MAJOR, *bytes(5), 1, 2, 3, 4])))
+    )
+    replies = end.pass_time(20, b"\0" + encode_frame(Frame(STATUS, 2, 0)))
     frames = [decode_frame(packet) for packet in replies.split(b"\0") if packet]
     return next(frame.payload[1] for frame in frames if frame and frame.number == STATUS)
 
@@ -346,7 +348,7 @@ def test_a_received_stop_is_confirmed(key_kind: int, is_greeted: bool) -> None:
     session = end.session(99, end.keys)
     if is_greeted:
         talk_honestly(end, session, session.hello())
-        end.passes(2500)  # time for the robot to forget the seal
+        end.pass_time(2500)  # time for the robot to forget the seal
     session.stop(0)
     assert talk_honestly(end, session, None)[-1] == "STOPPED"
     assert state_of(end) == STATE_STOPPED

@@ -159,7 +159,7 @@ class Life:
             self.guests[-1].send(rng.choice((b"", b"X", b"PING|check_connection\n")))
         self.robot.wait(rng.choice((2, 50, 1000, JOIN_RETRY_MS, 25_000)))
 
-    def looks(self, count: int) -> list[object]:
+    def observe(self, count: int) -> list[object]:
         """Return all that can be seen of the radio, again and again, from new settings on."""
         began_ms = self.robot.now_ms
         talk(self.robot, [], 2)
@@ -179,7 +179,7 @@ class Life:
             observations.append((reported, radio_state, bool(port_of(self.robot))))
         return observations
 
-    def restarts_until_it_rests(self) -> int:
+    def restart_until_it_rests(self) -> int:
         for count in range(4):
             if state(self.robot, self.owner)[1] == "RESTS":
                 return count
@@ -204,7 +204,7 @@ def check_radio(seed: int) -> str:
     for life in (used_life, Life()):
         life.move_to(end, last_network or SCHOOL)
         life.use(last_network)
-        observations_of_both.append([*life.looks(count), life.restarts_until_it_rests()])
+        observations_of_both.append([*life.observe(count), life.restart_until_it_rests()])
     assert observations_of_both[0] == observations_of_both[1], first_difference(
         *observations_of_both
     )

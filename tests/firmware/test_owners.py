@@ -48,7 +48,7 @@ def test_the_button_confirms_a_claim_and_the_robot_keeps_the_key() -> None:
     session = table.claim_session(keys)
     assert [key.is_pending for key in keys.stored_keys] == [False]
     assert owner_of(table, session) == OWNED_BY_YOU
-    assert table.tries(session) == "OK"
+    assert table.try_to_drive(session) == "OK"
     restarted = OwnedRobot(table.robot.memory(), seed=7)
     assert owner_of(restarted, restarted.session()) == OWNED_BY_OTHER
     assert owner_of(restarted, restarted.session(keys, nonce=2)) == OWNED_BY_YOU
@@ -171,8 +171,8 @@ def test_a_claim_without_frames_expires_and_the_next_one_succeeds() -> None:
     assert table.outcome(late_session, request) == "OK"
     next_session = table.session(first, nonce=3)
     assert table.outcome(next_session, next_session.claim(KEY_OWNER)) in ("NOT_OWNER", "WRONG_KEY")
-    assert table.tries(table.session(first, nonce=4)) != "OK"
-    assert table.tries(table.session(second, nonce=5)) == "OK"
+    assert table.try_to_drive(table.session(first, nonce=4)) != "OK"
+    assert table.try_to_drive(table.session(second, nonce=5)) == "OK"
     stranger = table.session(Keys(99), nonce=9)
     for key_kind in (KEY_OWNER, KEY_TEACHER):
         assert table.claim(stranger, key_kind) == "NOT_OWNER"
@@ -323,7 +323,7 @@ def test_a_stale_key_that_works_is_no_longer_stale() -> None:
     keys.mark_stale(keys.stored_keys[0])
     session = table.session(keys, nonce=9)
     assert owner_of(table, session) == OWNED_BY_OTHER
-    assert table.tries(session) == "OK"
+    assert table.try_to_drive(session) == "OK"
     assert [key.is_stale for key in keys.stored_keys] == [False]
     assert owner_of(table, table.session(keys, nonce=10)) == OWNED_BY_YOU
 
@@ -338,7 +338,7 @@ def test_a_teachers_key_drives_and_releases_a_robot() -> None:
     assert owner_of(table, session) == FREE
     assert table.claim(table.session(pupil, nonce=3)) == "OK"
     session = table.session(teacher, nonce=4)
-    assert table.tries(session) == "OK"
+    assert table.try_to_drive(session) == "OK"
     session.stop(table.robot.now_ms)
     table.advance_time(session, 100)
     teacher_session = table.session(pupil, nonce=5)
@@ -471,7 +471,7 @@ def test_a_robot_identifies_itself_but_leaves_the_buzzer_to_a_program() -> None:
     assert tune == [["BEEP", str(131 * (4 + (number >> 3 * k) % 8)), "200"] for k in range(3)]
     assert not table.robot.is_lit
     table.robot.did.clear()
-    assert table.tries(session) == "OK"
+    assert table.try_to_drive(session) == "OK"
     assert table.outcome(session, session.identify()) == "OK"
     table.advance_time(session, 3500)
     assert not [line for line in table.robot.did if "BEEP" in line]
@@ -517,7 +517,7 @@ def test_a_storm_of_identify_requests_affects_no_run_or_stop() -> None:
     """A stranger may ask as often as the line carries it."""
     table, keys = OwnedRobot(), Keys()
     session = table.claim_session(keys)
-    assert table.tries(session) == "OK"
+    assert table.try_to_drive(session) == "OK"
     table.robot.did.clear()
     number, epoch = BY_NAME["IDENTIFY"].number, session._epoch
     for seq in range(300):
@@ -536,7 +536,7 @@ def test_firmware_without_owner_support_announces_this_and_is_free() -> None:
     assert table.claim(session) == "UNKNOWN_MESSAGE"
     assert session.robot
     assert not session.robot.values.features & OWNERS
-    assert table.tries(session) == "OK"
+    assert table.try_to_drive(session) == "OK"
     for name, payload in (("CLAIM", bytes(17)), ("AUTHENTICATE", b"\0"), ("TEXT", b"\0")):
         assert table.ask_unsealed(session, name, payload)[0] == STATUSES["UNKNOWN_MESSAGE"]
     table.advance_time(None, 5000)

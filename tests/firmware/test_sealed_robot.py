@@ -192,7 +192,7 @@ def test_no_refusal_by_a_stranger_removes_a_key(is_pending: bool, is_cut: bool) 
     )
     assert [key.is_stale for key in keys.stored_keys] == [is_cut]
     assert is_cut or not keys.stored_keys[0].is_pending
-    assert table.tries(table.session(keys, nonce=9) if is_cut else session) == "OK"
+    assert table.try_to_drive(table.session(keys, nonce=9) if is_cut else session) == "OK"
     assert [(key.is_pending, key.is_stale) for key in keys.stored_keys] == [(False, False)]
 
 
@@ -236,11 +236,11 @@ def test_a_teachers_stop_needs_the_teachers_seal() -> None:
     table.claim_session(teacher, KEY_TEACHER)
     table.claim_session(pupil)
     session = table.session(teacher, nonce=6)
-    assert table.tries(session) == "OK"
+    assert table.try_to_drive(session) == "OK"
     table.answer(Frame(BY_NAME["STOP"].number, 77, session._epoch))
     assert state_of(table, session) == STATE_STOPPED
     teacher_session = table.session(pupil, nonce=7)
-    assert table.tries(teacher_session) == "OK"
+    assert table.try_to_drive(teacher_session) == "OK"
 
 
 def test_an_exhausted_counter_starts_a_new_seal() -> None:
@@ -248,9 +248,9 @@ def test_an_exhausted_counter_starts_a_new_seal() -> None:
     seal = session._sealing.seal
     assert seal
     seal.sent_counter = LAST_COUNTER - 1
-    assert table.tries(session) == "OK"
+    assert table.try_to_drive(session) == "OK"
     assert session._sealing.seal is seal and seal.is_spent
-    assert table.tries(session) == "OK"
+    assert table.try_to_drive(session) == "OK"
     assert session._sealing.seal is not seal
     assert session._sealing.seal and session._sealing.seal.sent_counter < 10
 
@@ -335,7 +335,7 @@ def test_a_stranger_gets_all_public_messages_beside_a_seal() -> None:
         frame = Frame(BY_NAME[name].number, (session._seq + 9) & 0xFF, session._epoch, payload)
         reply = table.answer(frame)
         assert reply and reply.payload[0] == 0 and not reply.is_sealed
-    assert table.tries(session) == "OK"
+    assert table.try_to_drive(session) == "OK"
     stranger = table.session(nonce=50)
     assert owner_of(table, stranger) == OWNED_BY_OTHER
 
@@ -385,7 +385,7 @@ def attack(frames: int, seed: int) -> Counter[str]:
         counts["accepted"] += len([line for line in robot.did if "MOTORS" in line])
         robot.did.clear()
     counts["accepted"] += robot.memory() != memory
-    assert table.tries(session) == "OK"
+    assert table.try_to_drive(session) == "OK"
     return counts
 
 

@@ -95,20 +95,20 @@ def image(text: str) -> Image:
 # Ways to start a program. ----------------------------------------------------------------------
 
 
-def uploads(scene: Scene, text: str) -> list[str]:
+def upload_program(scene: Scene, text: str) -> list[str]:
     scene.open_session()
     upload = scene.session.upload(image(text), saves=False)
     assert scene.robot.until(scene.session, upload) == OK
     return []
 
 
-def saves(scene: Scene, text: str) -> list[str]:
+def save_program(scene: Scene, text: str) -> list[str]:
     scene.open_session()
     assert scene.robot.until(scene.session, scene.session.upload(image(text))) == OK
     return []
 
 
-def pushes(scene: Scene, text: str) -> list[str]:
+def push_button(scene: Scene, text: str) -> list[str]:
     """The button starts the program that was sent."""
     scene.open_session()
     upload = scene.session.upload(image(text), runs=False, saves=False)
@@ -118,13 +118,16 @@ def pushes(scene: Scene, text: str) -> list[str]:
     return []
 
 
-def types(scene: Scene, text: str) -> list[str]:
+def type_program(scene: Scene, text: str) -> list[str]:
     scene.robot.wait(4000)  # until the computer counts as gone
     return type_text(scene.robot, line_of(Source("SI|" + text)) + "\n", 1)
 
 
 START_ACTIONS: dict[str, Callable[[Scene, str], list[str]]] = {
-    action.__name__: action for action in (uploads, saves, pushes, types)
+    "uploads": upload_program,
+    "saves": save_program,
+    "pushes": push_button,
+    "types": type_program,
 }
 
 # Ways to end the first one. ---------------------------------------------------------------------
@@ -494,7 +497,7 @@ def test_measured_moves_after_any_history_are_as_on_a_fresh_robot(part: int) -> 
 def find_max_lead_mm(scene: Scene) -> float:
     """Return the greatest lead of one wheel over the other in a straight move."""
     robot = scene.robot
-    uploads(scene, "F(60 CM, 60)")
+    upload_program(scene, "F(60 CM, 60)")
     left, right = robot.wheel_edges()
     max_lead_mm = 0.0
     for _ in range(60):
@@ -508,7 +511,7 @@ def find_max_lead_mm(scene: Scene) -> float:
 def test_the_next_program_does_not_make_up_for_a_held_wheel(wheels: int) -> None:
     assert find_max_lead_mm(with_discs()) < 0.01
     scene = with_discs()
-    uploads(scene, "F(60 CM, 60)")
+    upload_program(scene, "F(60 CM, 60)")
     scene.robot.talk(scene.session, 300)
     scene.robot.hold(wheels)
     scene.robot.talk(scene.session, 420)
@@ -526,7 +529,7 @@ def ends_of_move(scene: Scene, wheels: int, from_edges: float) -> tuple[float, .
     robot = scene.robot
     wheel_edges_before = robot.wheel_edges()
     robot.did.clear()
-    uploads(scene, "F(12 CM, 60)")
+    upload_program(scene, "F(12 CM, 60)")
     held_ms = 0
     while not robot.did[-1].endswith("FINISHED"):
         if robot.wheel_edges()[0] - wheel_edges_before[0] > from_edges:
@@ -557,7 +560,7 @@ def test_each_move_is_corrected_after_any_number_of_corrections(wheels: int) -> 
 def test_a_detached_run_continues_after_an_attached_one(first: str, is_typed: bool) -> None:
     scene = Scene("a mega")
     robot = scene.robot
-    uploads(scene, first)
+    upload_program(scene, first)
     robot.talk(scene.session, 300)
     if is_typed:
         robot.wait(4200)  # until no client counts as heard

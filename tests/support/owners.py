@@ -141,7 +141,7 @@ class OwnedRobot:
         assert self.claim(session, kind) == "OK"
         return session
 
-    def tries(self, session: Session) -> str:
+    def try_to_drive(self, session: Session) -> str:
         """Return the robot's answer to a client that wants to drive."""
         return self.outcome(session, session.upload(image_of(FOREVER), saves=False))
 

@@ -59,7 +59,7 @@ class Fuzz:
         if is_latched and moves:
             assert moves[-1].endswith("MOTORS 0 0"), moves
 
-    def steps(self, milliseconds: int, data: bytes) -> bytes:
+    def step_for(self, milliseconds: int, data: bytes) -> bytes:
         """Step milliseconds, in each of which one of the bytes arrives."""
         robot = self.robot
         robot.did.clear()
@@ -74,10 +74,10 @@ class Fuzz:
         return sent_bytes
 
     def wait(self, milliseconds: int) -> bytes:
-        return self.steps(milliseconds, b"")
+        return self.step_for(milliseconds, b"")
 
     def type(self, data: bytes) -> bytes:
-        return self.steps(len(data), data) if data else b""
+        return self.step_for(len(data), data) if data else b""
 
     # -- the input --------------------------------------------------------------------------------
 
