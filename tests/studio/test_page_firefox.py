@@ -13,7 +13,7 @@ from tests.support.needs import need
 from tests.support.page_programs import MOVE_COLOUR, colours, content, list_programs, share
 from tests.support.studio import (
     Pages,
-    dances_like_the_command,
+    dance_like_the_command,
     enter,
     image,
     speak,
@@ -95,7 +95,7 @@ def test_a_mistake_is_reported_in_spanish_and_repaired(page: Page) -> None:
 
 
 def test_a_run_matches_the_command(page: Page) -> None:
-    dances_like_the_command(page)
+    dance_like_the_command(page)
 
 
 def test_a_world_is_changed_and_saved(page: Page) -> None:

@@ -21,7 +21,7 @@ from tests.support.studio import (
     SETTLED_SCRIPT,
     ask_worker,
     colors_of,
-    dances_like_the_command,
+    dance_like_the_command,
     speak,
     turn,
     wait_for_phase,
@@ -72,7 +72,7 @@ def test_a_run_on_the_page_equals_one_without(
 
 
 def test_the_trace_list_matches_the_command(page: Page) -> None:
-    expected_texts = dances_like_the_command(page)
+    expected_texts = dance_like_the_command(page)
     assert page.inner_text("#doing") == "It has ended."
     page.click("#seen_trace")
     with page.expect_download() as download_info:

@@ -78,7 +78,7 @@ def test_a_page_that_hangs_stops_its_robot(page: Page, robot: PtyRobot) -> None:
     start_drive(page, robot)
     start_ms = robot.robot_ms
     hang(page, LONGEST_HANG_MS)
-    assert robot.stands_after_ms(start_ms) < LONGEST_HANG_MS  # the dead-man timer stops it
+    assert robot.standstill_after_ms(start_ms) < LONGEST_HANG_MS  # the dead-man timer stops it
 
 
 def test_two_tabs_do_not_compete_for_a_robot(

@@ -138,7 +138,7 @@ class PtyRobot(PtyPort):
         """Wait until something is so."""
         waiting.until(is_reached, description)
 
-    def stands_after_ms(self, start_ms: int) -> int:
+    def standstill_after_ms(self, start_ms: int) -> int:
         """Wait until the motors are off; return how long that took of the robot's own time.
 
         It goes on like the time of the wall, and no further than this computer has come.

@@ -491,7 +491,7 @@ def ask_worker(page: Page, requests: Sequence[dict[str, Any]]) -> list[dict[str,
 DANCE = "F(1, 80);R(0.5, 60);BEEP(0.1, 440);SHOW(5);B(0.2, 50)"  # reads no sensor
 
 
-def dances_like_the_command(page: Page) -> list[str]:
+def dance_like_the_command(page: Page) -> list[str]:
     """Run a program to its end: the list is the trace of `tsc run`, which is returned."""
     write(page, DANCE)
     page.select_option("#speed", "20")
