@@ -40,10 +40,10 @@ def own_goals(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(campaign, "FIRST_SEED", 7)
     run = subprocess.run
 
-    def runs(words: list[str], **how: object) -> object:
+    def run_unless_generating(words: list[str], **how: object) -> object:
         return None if "tools.generate" in words else run(words, **how)  # type: ignore[call-overload]
 
-    monkeypatch.setattr(subprocess, "run", runs)
+    monkeypatch.setattr(subprocess, "run", run_unless_generating)
 
 
 def result_of(name: str) -> Result:

@@ -390,11 +390,11 @@ def test_a_healthy_robot_on_a_shared_port_is_watched(case: Case) -> None:
 def test_a_doubtful_robot_gets_no_further_requests(case: Case, cause: str) -> None:
     places = []
 
-    def doubts(port: str, hello: HelloReply) -> str:
+    def note_port(port: str, hello: HelloReply) -> str:
         places.append(port)
         return cause
 
-    case.expectations = case.expectations._replace(doubt_of=doubts)
+    case.expectations = case.expectations._replace(doubt_of=note_port)
     (finding,) = case.diagnosis(RADIO).findings
     assert (finding.cause, finding.values) == (cause, {"id": "12347f3a"})
     assert places == [RADIO] and finding.is_wrong

@@ -59,7 +59,7 @@ class Fingers:
     def __init__(self, page: Page) -> None:
         self._session = page.context.new_cdp_session(page)
 
-    def are(self, kind: str, *points: tuple[float, float]) -> None:
+    def touch(self, kind: str, *points: tuple[float, float]) -> None:
         touches = [{"x": x, "y": y, "id": k} for k, (x, y) in enumerate(points)]
         self._session.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": touches})
 
@@ -86,12 +86,12 @@ def test_a_start_picture_can_be_driven_at_once(pages: Pages, size: dict[str, int
     x, y = middle(page, "#pad_stick")
     a = middle(page, "#pad button:visible")
     fingers = Fingers(page)
-    fingers.are("touchStart", (x, y))
-    fingers.are("touchMove", (x, y - 200))
+    fingers.touch("touchStart", (x, y))
+    fingers.touch("touchMove", (x, y - 200))
     wait_for(page, lambda: read_motor_powers(page) == "100 100", "it drives")
-    fingers.are("touchStart", (x, y - 200), a)
+    fingers.touch("touchStart", (x, y - 200), a)
     wait_for(page, lambda: any("BEEP 440" in line for line in trace(page)), "it beeps")
-    fingers.are("touchEnd")
+    fingers.touch("touchEnd")
     wait_for(page, lambda: read_motor_powers(page) == "0 0", "it stands")
     page.keyboard.down("ArrowUp")
     wait_for(page, lambda: read_motor_powers(page) == "100 100", "it drives by a key")
@@ -245,10 +245,10 @@ def test_a_real_robot_is_driven_and_stops_when_the_page_is_hidden(pages: Pages) 
         fingers = Fingers(page)
 
         def touch() -> None:
-            fingers.are("touchStart", middle(page, "[data-key=KEY_UP]"))
+            fingers.touch("touchStart", middle(page, "[data-key=KEY_UP]"))
 
         def lift() -> None:
-            fingers.are("touchEnd")
+            fingers.touch("touchEnd")
 
         def press() -> None:
             page.keyboard.down("ArrowUp")

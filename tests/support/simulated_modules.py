@@ -70,11 +70,11 @@ class SimulatedModule:
     def answer(self, command: str) -> str:
         for pattern, answer in self.answers:
             match = re.fullmatch(pattern, command, re.DOTALL)
-            if match and self._keeps(**match.groupdict()):
+            if match and self._apply_settings(**match.groupdict()):
                 return answer.format(end=self)
         return self.default_answer
 
-    def _keeps(
+    def _apply_settings(
         self, name: str | None = None, pin: str = "", speed: str = "", reset: str = ""
     ) -> bool:
         """Apply the settings of a command; return False if there is no such speed."""

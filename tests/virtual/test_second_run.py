@@ -30,17 +30,17 @@ TOLERANCE_CM, TOLERANCE_DEGREES = 0.5, 1.0
 RUN_MS = 2500
 
 
-def pushes(talk: Talk) -> None:
+def push_button(talk: Talk) -> None:
     talk.robot.press()
     talk.wait(60)
     talk.robot.let_go()
 
 
-def types(talk: Talk) -> None:
+def type_stop(talk: Talk) -> None:
     talk.robot.step(talk.robot.now_ms + 20, b"\nS\n")
 
 
-def computer_stops(talk: Talk) -> None:
+def stop_by_computer(talk: Talk) -> None:
     talk.session.stop(talk.robot.now_ms)
     talk.wait(200)
 
@@ -48,9 +48,9 @@ def computer_stops(talk: Talk) -> None:
 END_ACTIONS: dict[str, Callable[[Talk], object]] = {
     "nothing": lambda talk: talk.wait(4000),
     "zeros": lambda talk: talk.robot.step(talk.robot.now_ms + 20, bytes(STOP_BYTES)),
-    "a line": types,
-    "its computer": computer_stops,
-    "the button": pushes,
+    "a line": type_stop,
+    "its computer": stop_by_computer,
+    "the button": push_button,
     "silence": lambda talk: talk.robot.step(talk.robot.now_ms + 3000),
     "a reset": lambda talk: talk.robot.power_cycle(RESET_BUTTON),
     "off and on": lambda talk: talk.robot.power_cycle(),
