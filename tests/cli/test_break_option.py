@@ -221,12 +221,12 @@ def test_breakpoints_on_no_instruction_are_refused_before_anything_is_sent(
 def test_an_image_of_unknown_text_has_no_lines(
     pty_robot: PtyRobot, program: Path, tmp_path: Path, tsc: Tsc, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    image = tmp_path / "drive.bin"
-    tsc("compile", program, "-o", image).gives(0)
-    result = on(pty_robot, "upload", image, "--no-save", "--break", "7").gives(0)
+    image_file = tmp_path / "drive.bin"
+    tsc("compile", program, "-o", image_file).gives(0)
+    result = on(pty_robot, "upload", image_file, "--no-save", "--break", "7").gives(0)
     assert result.out.splitlines()[1:] == [*HALT_BEFORE_7, *END_LINES], "its map is in the cache"
     monkeypatch.setattr("tiniscript.library.source_map.recall", lambda checksum: None)
-    on(pty_robot, "upload", image, "--break", "7").gives(2, "an image has no lines")
+    on(pty_robot, "upload", image_file, "--break", "7").gives(2, "an image has no lines")
 
 
 def test_nothing_is_sent_to_a_robot_that_cannot_halt(

@@ -131,8 +131,8 @@ def test_no_output_overwrites_another_file_of_its_command(
 def test_the_default_image_path_is_also_an_output(tsc: Tsc, tmp_path: Path) -> None:
     program = tmp_path / "a.ts"
     program.write_text(PROGRAM)
-    image = tmp_path / "a.bin"
-    assert tsc("compile", program, "--map", image).code == 2
+    image_file = tmp_path / "a.bin"
+    assert tsc("compile", program, "--map", image_file).code == 2
     profile = tmp_path / "a.bin"
     profile.write_text(PROFILE, encoding="utf-8")
     tsc("compile", program, "--robot", profile).gives(2, "-o would overwrite")

@@ -43,9 +43,9 @@ def test_a_program_too_large_for_a_machine_is_refused_as_a_sketch(tsc: Tsc) -> N
 
 
 def test_impossible_requests_are_refused_with_a_reason(tsc: Tsc, tmp_path: Path) -> None:
-    image = tmp_path / "a.bin"
-    assert tsc("compile", "-e", PROGRAM, "-o", image).code == 0
-    tsc("show", "--arduino", image).gives(2, "needs its source.")
+    image_file = tmp_path / "a.bin"
+    assert tsc("compile", "-e", PROGRAM, "-o", image_file).code == 0
+    tsc("show", "--arduino", image_file).gives(2, "needs its source.")
     tsc("show", "--arduino", "--json", "-e", PROGRAM).gives(2, "one of them.")
     result = tsc("show", "-e", PROGRAM, "-o", tmp_path / "b.ino")
     assert result.code == 2 and "--arduino" in result.err and not (tmp_path / "b.ino").exists()

@@ -263,9 +263,9 @@ def test_undo_reports_the_restored_program_and_its_save(pty_robot: PtyRobot) -> 
 def test_the_file_of_the_program_is_named_where_it_is_known(
     pty_robot: PtyRobot, tmp_path: Path
 ) -> None:
-    name = tmp_path / "square.ts"
-    name.write_text(FIRST_PROGRAM + "\n", encoding="utf-8")
-    assert on(pty_robot, "upload", name).code == 0
+    file = tmp_path / "square.ts"
+    file.write_text(FIRST_PROGRAM + "\n", encoding="utf-8")
+    assert on(pty_robot, "upload", file).code == 0
     assert on(pty_robot, "upload", "-e", SECOND_PROGRAM).code == 0
     assert "square.ts)" in on(pty_robot, "start", "--previous").out
 

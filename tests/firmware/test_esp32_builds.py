@@ -143,18 +143,20 @@ def test_the_whole_sketch_links_with_only_the_core(chip: str, major: int, tmp_pa
     isa = CHIPS[ISA[chip]]
     if no_compiler(isa):
         pytest.skip(no_compiler(isa))
-    code = [path for path in sorted((SOURCES / "src").rglob("*.cpp")) if "avr" not in path.parts]
+    cpp_paths = [
+        path for path in sorted((SOURCES / "src").rglob("*.cpp")) if "avr" not in path.parts
+    ]
     flags = ("-Wall", "-Wextra", "-Werror", "-ffreestanding", *flags_of(chip, major))
     objects: list[str] = []
-    for path in code:
+    for path in cpp_paths:
         objects.append(str(tmp_path / f"{len(objects)}.o"))
         compile_one(isa, path, objects[-1], flags)
     object_path = str(tmp_path / "whole.o")
     subprocess.run([*isa.linker, "-r", *objects, "-o", object_path], check=True)
     assert ram_of(isa, object_path) <= MOST_RAM, "the radios need the rest"
-    names = isa.measurer.replace("-size", "-nm")
+    nm = isa.measurer.replace("-size", "-nm")
     output = subprocess.run(
-        [names, "-u", object_path], capture_output=True, text=True, check=True
+        [nm, "-u", object_path], capture_output=True, text=True, check=True
     ).stdout
     symbols = {line.split()[-1] for line in output.splitlines()}
     serial = {name for name in symbols if "HardwareSerial" in name}

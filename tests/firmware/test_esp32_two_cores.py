@@ -30,14 +30,14 @@ THREADS = (
 
 
 def program(sources: Path = SOURCES) -> Path:
-    code = [
+    cpp_paths = [
         *(path for path in sorted((sources / "src").rglob("*.cpp")) if "avr" not in path.parts),
         *(sources / "extras" / "esp32" / name for name in THREADS),
     ]
     headers = [path.read_bytes() for path in sorted((sources / "src").rglob("*.h"))]
     headers += [path.read_bytes() for path in sorted(STAND_INS_FOLDER.rglob("*.h"))]
     objects = []
-    for path in code:
+    for path in cpp_paths:
         texts = [*headers, path.name.encode(), path.read_bytes()]
         objects.append(str(compile_once(CLANG, BUILD_CACHE, ".o", FLAGS, texts, ["-c", str(path)])))
     return compile_once(

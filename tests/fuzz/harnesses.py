@@ -68,14 +68,14 @@ def missing() -> str:
 
 def harness(name: str) -> Path:
     """Return the program of a harness."""
-    code = [SOURCES / "extras" / "fuzz" / f"{name.removeprefix('large_')}.cpp"]
+    cpp_paths = [SOURCES / "extras" / "fuzz" / f"{name.removeprefix('large_')}.cpp"]
     for pattern in PARTS[name]:
-        code += sorted(SOURCES.glob(pattern))
-    headers = [path for pattern in HEADERS for path in sorted(SOURCES.glob(pattern))]
+        cpp_paths += sorted(SOURCES.glob(pattern))
+    header_paths = [path for pattern in HEADERS for path in sorted(SOURCES.glob(pattern))]
     own_defines = DEFINES_BY_HARNESS.get(name, ()) + (
         () if name == "machine" else (NO_TRACE_CMP_FLAG,)
     )
-    return build_with(COMPILER, [*code, *headers], (*FLAGS, *own_defines, *WARNINGS))
+    return build_with(COMPILER, [*cpp_paths, *header_paths], (*FLAGS, *own_defines, *WARNINGS))
 
 
 class Found(NamedTuple):

@@ -46,15 +46,15 @@ def slow_profile(tmp_path: Path) -> Path:
 def test_a_robot_without_speeds_refuses_an_image(
     program: Path, slow_profile: Path, tmp_path: Path
 ) -> None:
-    image = tmp_path / "way.bin"
-    assert "0.741 s" in run_in_process("compile", program, "-o", image).out, (
+    image_file = tmp_path / "way.bin"
+    assert "0.741 s" in run_in_process("compile", program, "-o", image_file).out, (
         "the receipt says how long"
     )
-    assert image.read_bytes()[3] == 1 and image.read_bytes()[14] == GO
-    result = run_in_process("upload", image, "--robot", slow_profile, "--lang", "es")
+    assert image_file.read_bytes()[3] == 1 and image_file.read_bytes()[14] == GO
+    result = run_in_process("upload", image_file, "--robot", slow_profile, "--lang", "es")
     assert result.code == 1 and "no puede avanzar por centímetros" in result.err
     assert "tsc run" in result.err
-    assert run_in_process("run", image).out.endswith("741 DONE\n")
+    assert run_in_process("run", image_file).out.endswith("741 DONE\n")
 
 
 def test_each_missing_feature_has_its_own_text() -> None:

@@ -313,12 +313,12 @@ def test_a_missing_wasmtime_is_reported_with_the_next_step(monkeypatch: pytest.M
 def test_a_program_may_be_a_file(tmp_path: Path) -> None:
     path = tmp_path / "drive.ts"
     path.write_text("\ufeffSI|SHOW(7)\r\n", encoding="utf-8")
-    image = tmp_path / "drive.bin"
-    image.write_bytes(tiniscript.compile("SI|SHOW(7)").image)
-    assert str(tiniscript.run(path)) == str(tiniscript.run(image)) == str(
+    image_file = tmp_path / "drive.bin"
+    image_file.write_bytes(tiniscript.compile("SI|SHOW(7)").image)
+    assert str(tiniscript.run(path)) == str(tiniscript.run(image_file)) == str(
         tiniscript.run("SI|SHOW(7)")
     )  # fmt: skip
-    for name in (str(path), str(image)):
+    for name in (str(path), str(image_file)):
         for use in (tiniscript.run, tiniscript.compile):
             with pytest.raises(tiniscript.UsageError) as error_info:
                 use(name)

@@ -46,19 +46,19 @@ def program(chip: str) -> bytes:
     """Return the program of a chip, an ELF file."""
     folders = [SOURCES / name for name in ("src/vm", "extras/chip", "extras/avr")]
     made_from = contents(SOURCES / "src", *folders)
-    code = sorted(str(path) for folder in folders for path in folder.glob("*.[cS]*"))
+    source_paths = sorted(str(path) for folder in folders for path in folder.glob("*.[cS]*"))
     mcu, *extra_arguments = COMPILER_ARGUMENTS[chip]
     flags = (f"-mmcu={mcu}", *extra_arguments, *FLAGS, *WARNINGS)
-    return compile_sources("the C++ machine", flags, code, made_from).read_bytes()
+    return compile_sources("the C++ machine", flags, source_paths, made_from).read_bytes()
 
 
 def compile_sources(
-    description: str, flags: Sequence[str], code: Sequence[str], made_from: list[bytes]
+    description: str, flags: Sequence[str], source_paths: Sequence[str], made_from: list[bytes]
 ) -> Path:
     """Return the program of sources; unchanged parts are reused."""
 
     def make(path: Path) -> None:
-        words = ["avr-g++", *flags, *code, "-o", str(path)]
+        words = ["avr-g++", *flags, *source_paths, "-o", str(path)]
         completed = subprocess.run(words, capture_output=True, text=True)
         assert completed.returncode == 0, (
             f"avr-g++ refuses {description}:\n{completed.stderr[:4000]}"

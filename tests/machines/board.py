@@ -144,7 +144,7 @@ def _build(header: str, extra_code: str, words: Sequence[object], path: Path) ->
         source = Path(shutil.copytree(SOURCES / "src", Path(name) / "src"))
         (source / "boards" / "kits" / "own.h").write_text(header, encoding="utf-8")
         (source / "more.cpp").write_text(extra_code, encoding="utf-8")
-        code = [
+        source_paths = [
             path
             for path in sorted(
                 [
@@ -157,7 +157,7 @@ def _build(header: str, extra_code: str, words: Sequence[object], path: Path) ->
             )
             if path.suffix in (".cpp", ".S") and path.name not in FIRMWARE_ONLY_FILES
         ]
-        run("avr-g++", *code, f"-I{source}", *words, "-o", path)
+        run("avr-g++", *source_paths, f"-I{source}", *words, "-o", path)
 
 
 class Change(NamedTuple):

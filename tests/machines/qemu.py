@@ -92,13 +92,16 @@ def _answer(bytes_io: BytesIO) -> Answer:
 def build_chip_program(name: str, sources: Path = SOURCES) -> Path:
     """Return the program of a chip made from `sources`, a folder like `vm_arduino`."""
     folders = [sources / folder for folder in ("src/vm", "src/text", "extras/chip", "extras/qemu")]
-    code = [path for folder in folders for path in sorted(folder.glob("*.cpp"))]
-    code.append(sources / "extras/qemu" / chips.CHIPS[name].start_file)
+    source_paths = [path for folder in folders for path in sorted(folder.glob("*.cpp"))]
+    source_paths.append(sources / "extras/qemu" / chips.CHIPS[name].start_file)
     chip = chips.CHIPS[name]
     made_from = [*contents(sources / "src", *folders), (folders[-1] / "chip.ld").read_bytes()]
     words = (*chips.COMMON_FLAGS, *WARNINGS, *map(str, chip))
     return build_cached(
-        chip.compiler[0], words, made_from, lambda path: chips.build(chip, code, path, *WARNINGS)
+        chip.compiler[0],
+        words,
+        made_from,
+        lambda path: chips.build(chip, source_paths, path, *WARNINGS),
     )
 
 

@@ -79,9 +79,17 @@ def measure_process(pid: int) -> Usage:
 
 @contextmanager
 def visitors(port: int, kind: str, count: int) -> Iterator[None]:
-    code = ["sh", "-c", f'ulimit -n {count + 100}; exec "$@"', "sh", sys.executable, "-c", VISITORS]
+    command = [
+        "sh",
+        "-c",
+        f'ulimit -n {count + 100}; exec "$@"',
+        "sh",
+        sys.executable,
+        "-c",
+        VISITORS,
+    ]
     with subprocess.Popen(
-        [*code, str(port), kind, str(count)], stdin=subprocess.PIPE, stdout=subprocess.PIPE
+        [*command, str(port), kind, str(count)], stdin=subprocess.PIPE, stdout=subprocess.PIPE
     ) as visitor:
         try:
             assert visitor.stdin and visitor.stdout

@@ -76,19 +76,19 @@ def test_commands_share_one_session(pty_robot: PtyRobot, link: Command, tmp_path
 def test_all_names_of_a_port_lead_to_its_server(
     pty_robot: PtyRobot, link: Command, tmp_path: Path
 ) -> None:
-    name = tmp_path / "by-id"
-    name.symlink_to(pty_robot.port)
-    assert run_subprocess("stop", "--port", name).code == 0
-    assert "SHOW 2" in run_subprocess("live", "SHOW(2)", "--port", name).out
+    link_path = tmp_path / "by-id"
+    link_path.symlink_to(pty_robot.port)
+    assert run_subprocess("stop", "--port", link_path).code == 0
+    assert "SHOW 2" in run_subprocess("live", "SHOW(2)", "--port", link_path).out
     assert hellos(pty_robot) == 1
     rows = json.loads(run_subprocess("doctor", "--ports", "--json").out)
     assert {row["port"]: row["held_by"] for row in rows}[pty_robot.port] == "monitor --hold"
-    result = run_subprocess("doctor", "--ports", "--ask", "--port", name)
+    result = run_subprocess("doctor", "--ports", "--ask", "--port", link_path)
     assert "robot" in result.out and "in use by tsc monitor --hold" in result.out
-    run_subprocess("show", "--port", name, "--baud", "115200").gives(
+    run_subprocess("show", "--port", link_path, "--baud", "115200").gives(
         3, "in use by tsc monitor --hold, at 9600 baud"
     )
-    run_subprocess("monitor", "--hold", "--port", name).gives(
+    run_subprocess("monitor", "--hold", "--port", link_path).gives(
         3, "already shared, by tsc monitor --hold"
     )
 

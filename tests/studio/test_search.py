@@ -37,15 +37,15 @@ CALLED = {
 def test_a_search_finds_a_block_by_whatever_it_is_called(
     page_data: Path, tmp_path: Path, language: str
 ) -> None:
-    texts = tmp_path / "texts.json"
-    texts.write_text(json.dumps(page_texts(language)), encoding="utf-8")
+    texts_file = tmp_path / "texts.json"
+    texts_file.write_text(json.dumps(page_texts(language)), encoding="utf-8")
     expected = [
         (block, word)
         for block, called in zip(BLOCKS.split("|"), CALLED[language].split("|"), strict=True)
         for word in called.split()
     ]
     words = "".join(f"{json.dumps(word)}\n" for _, word in expected)
-    rows = in_node(SCRIPT, str(page_data), str(texts), input_text=words)
+    rows = in_node(SCRIPT, str(page_data), str(texts_file), input_text=words)
     for (block, word), row in zip(expected, rows[: len(expected)], strict=True):
         assert any(f"{match} ".startswith(f"{block} ") for match in json.loads(row)), (
             word,
