@@ -10,8 +10,8 @@ namespace tiniscript {
 constexpr uint8_t kStillFrames = 50;  // 20 ms each
 
 tini_always_inline void begin_motors() {
-  begin_servo(kServos[kLeftMotor.number]);
-  begin_servo(kServos[kRightMotor.number]);
+  hold_servo_pin_low(kServos[kLeftMotor.number]);
+  hold_servo_pin_low(kServos[kRightMotor.number]);
 }
 
 // Leaves alone a servo that stands still or is about to.

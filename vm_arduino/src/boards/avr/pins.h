@@ -120,7 +120,7 @@ tini_always_inline void begin_output(Pin pin, bool is_high) {
 tini_always_inline void begin_pull_up(Pin pin) { write(pin, true); }
 
 // A servo begins low.
-tini_always_inline void begin_servo(Pin pin) { begin_output(pin, false); }
+tini_always_inline void hold_servo_pin_low(Pin pin) { begin_output(pin, false); }
 
 // -- PWM
 

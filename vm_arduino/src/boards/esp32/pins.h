@@ -124,7 +124,7 @@ inline void begin_channel(Pwm pwm, uint32_t hertz, uint8_t bits) {
 inline void begin_pwm(Pwm pwm) { begin_channel(pwm, kPwmHertz, kPwmBits); }
 
 // A servo begins low; `servo_begin` sets up its channel.
-inline void begin_servo(Pwm servo) { begin_output(servo.pin, false); }
+inline void hold_servo_pin_low(Pwm servo) { begin_output(servo.pin, false); }
 
 inline void connect_inside(Pwm pwm, uint8_t level) {
   write_duty(pwm, level);
