@@ -288,7 +288,7 @@ class _Verifier:
         self.blocks.append(_Block(kind, self.next_offset, end))
         if kind == _COUNT:
             self.counters += 1
-            self.opens(self.counters, 0)
+            self.note_open(self.counters, 0)
 
     def close(self, kind: str) -> None:
         """Close the innermost block: a loop."""
@@ -316,7 +316,7 @@ class _Verifier:
             self.refuse("BAD_LOOP_END")
         loop.end = self.target
 
-    def opens(self, counters: int, calls: int) -> None:
+    def note_open(self, counters: int, calls: int) -> None:
         """Note the counters and calls open at once, and refuse too many in all tasks together."""
         routine = self.routine
         routine.counters = max(routine.counters, counters)
@@ -387,7 +387,7 @@ class _Verifier:
         callee = next((routine for routine in self.defs if routine.start == self.target), None)
         if callee is None:
             self.refuse("BAD_CALL")
-        self.opens(self.counters + callee.counters, callee.calls + 1)
+        self.note_open(self.counters + callee.counters, callee.calls + 1)
 
 
 _STEPS: dict[str, Callable[[_Verifier], object]] = {

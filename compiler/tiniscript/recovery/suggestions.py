@@ -411,7 +411,7 @@ class Gaps(dict[str, str]):
 
     def meant_word(self, name: str) -> str:
         """Return the word of the language that a capture begins with."""
-        return self.trailing_tokens.means(self.tokens_from(name)[0].text)
+        return self.trailing_tokens.meant_word(self.tokens_from(name)[0].text)
 
     def captured_text(self, name: str) -> str:
         start, end = self.span(name)
@@ -532,7 +532,7 @@ def _choice(gaps: Gaps, is_exact: bool = False) -> str:
     text = f"{gaps.trailing_tokens.call_text},{gaps['l']}".lstrip(",")
     spoken_instructions = []
     for match in map(_CHOICE_CALL.fullmatch, re.split(r",(?![^(]*\))", text)):
-        word = WORDS.get(gaps.trailing_tokens.means(plain(match[1]))) if match else None
+        word = WORDS.get(gaps.trailing_tokens.meant_word(plain(match[1]))) if match else None
         if match is None or word is None or not word.role.is_instruction:
             return ""
         if is_exact and word.arguments and not match[2]:

@@ -230,7 +230,7 @@ class TrailingTokens:
             "X",
             "*",
         )
-        is_multiplied = is_multiplied or self.means(previous_text) == "LOOP"
+        is_multiplied = is_multiplied or self.meant_word(previous_text) == "LOOP"
         concept = (
             lexicon_concept(text) if token.kind is WORD and not self.names.is_name(text) else None
         )
@@ -245,13 +245,14 @@ class TrailingTokens:
             and (is_counted or (is_multiplied and not lexicon_meaning(following_text, "unit"))),
             "@percent": is_number and self.has_percent,
             "@in_s": lexicon_meaning(text, "unit")[:1] == ("s",),
-            "@other": text not in WORDS and self.means(text) == OPPOSITE_MOVES.get(self.command),
+            "@other": text not in WORDS
+            and self.meant_word(text) == OPPOSITE_MOVES.get(self.command),
             "@paced": self._is_paced(k),
             "@told": self.tokens and self._is_redundant(k),
             f"@no{concept}": not is_known_concept,
             "@call": word_row and word_row.is_call,
             "@order": word_row and word_row.role.is_instruction,
-            "@ask": self.means(text) in ASKING_WORDS,
+            "@ask": self.meant_word(text) in ASKING_WORDS,
             "@quote": text in QUOTES and text != "`",
             "@mark": text in MARKS,
             "@dots": text == "…" or (text == "." and "." in (previous_text, following_text)),
@@ -261,7 +262,7 @@ class TrailingTokens:
     def _text_at(self, k: int) -> str:
         return self.row_tokens[k].text if 0 <= k < len(self.row_tokens) else ""
 
-    def means(self, word: str) -> str:
+    def meant_word(self, word: str) -> str:
         """Return the word of the language that is meant, or ""."""
         meant_text = "" if word in EXTENTS else self.names.find_meaning(word)
         return WORD_OF_END.get(meant_text, meant_text)
@@ -326,7 +327,7 @@ class TrailingTokens:
         if len(words) == 1 and token.text in WORDS and not lexicon_meaning(token.text, "note"):
             return True
         is_explained = (
-            self.means(token.text)
+            self.meant_word(token.text)
             or lexicon_meaning(token.text, "power")
             or self.command == "START"
         )
@@ -354,7 +355,7 @@ class TrailingTokens:
             return self.is_in_block and not self.is_arm
         if lexicon_meaning(text, "until"):
             return command != "SHOW" and self.row_tokens[0].text != "(" and not self.has_until
-        concept = self.means(text)
+        concept = self.meant_word(text)
         word_row = WORDS.get(concept)
         is_repetition = concept == command or (concept == "S" and self.has_until)
         if (

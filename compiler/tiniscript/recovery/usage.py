@@ -1026,7 +1026,7 @@ def _concept_alone(gaps: Gaps, is_numbered: bool) -> str:
     return concept if (has_number if is_numbered else len(tokens) == 1) else ""
 
 
-def _if_asking(word: str) -> str:
+def _asking_word_or_empty(word: str) -> str:
     return word if word in ASKING_WORDS else ""
 
 
@@ -1234,7 +1234,7 @@ def _second_start(gaps: Gaps) -> str:
     return usage.source[usage.diagnostic.span].upper() + "|" * is_bar
 
 
-def _question_begun(gaps: Gaps) -> str:
+def _if_word_or_empty(gaps: Gaps) -> str:
     """IF, where SI has no bar after it."""
     return "IF" if _second_start(gaps) == "SI" else ""
 
@@ -1245,8 +1245,8 @@ def _saying_button(gaps: Gaps) -> str:
     return word if word == "S8" or lexicon_concept(word) == "BUTTON" else ""
 
 
-def _part_of_when(gaps: Gaps) -> str:
-    """Report an ELSE in a WHEN."""
+def _else_in_when_or_empty(gaps: Gaps) -> str:
+    """An ELSE in a WHEN."""
     usage = _usage_of(gaps)
     text_before = usage.text[: usage.diagnostic.span.start]
     is_open = re.search(r"(?is)\bWHEN\b(?!.*\bEND_?WHEN\b)", text_before)
@@ -1453,7 +1453,7 @@ GAP_FUNCTIONS: dict[str, Callable[[Gaps], str]] = {
     "turned": _gap_of(lambda usage: usage.turn.values_text),
     "way_usage": _gap_of(lambda usage: _usage(usage.turn.direction)),
     "word_said": _foreign_word, "concept": _concept,
-    "asking": lambda gaps: _if_asking(_concept(gaps)),
+    "asking": lambda gaps: _asking_word_or_empty(_concept(gaps)),
     "concept_alone": lambda gaps: _concept_alone(gaps, is_numbered=False),
     "concept_numbered": lambda gaps: _concept_alone(gaps, is_numbered=True),
     "concept_usage": lambda gaps: _usage_of(gaps).usage(_concept(gaps)), "variable": _variable,
@@ -1469,7 +1469,7 @@ GAP_FUNCTIONS: dict[str, Callable[[Gaps], str]] = {
     "own": _own_name, "end": _block_end, "done": _method_call,
     "done_usage": lambda gaps: _usage_of(gaps).usage(_method_call(gaps)),
     "member": _gap_of(lambda usage: usage.text[slice(*_member_span(usage))]),
-    "bare_asking": _gap_of(lambda usage: _if_asking(usage.diagnostic.values["word"])),
+    "bare_asking": _gap_of(lambda usage: _asking_word_or_empty(usage.diagnostic.values["word"])),
     "bare_example": _gap_of(lambda usage: WORDS[usage.instruction_name].example
                         if len(usage.row_tokens) == 1 and usage.instruction_name in WORDS
                         and WORDS[usage.instruction_name].arguments else ""),
@@ -1492,13 +1492,13 @@ GAP_FUNCTIONS: dict[str, Callable[[Gaps], str]] = {
     "begun_behind": _begun_behind,
     "endless_move": _endless_move, "forever_first": _swapped_forever,
     "asked_behind": _until_with_move,
-    "arm": _else_word, "begun_again": _second_start, "question_begun": _question_begun,
+    "arm": _else_word, "begun_again": _second_start, "question_begun": _if_word_or_empty,
     "twice": lambda gaps:
         _second_start(gaps) if _usage_of(gaps).program_text.setup_word == "SB" else "",
     "named_endless": lambda gaps: _usage_of(gaps).word_meaning("LOOP", _forever_word(gaps)),
     "instead": _gap_of(lambda usage: usage.program_text.setup_word),
     "saying_button": _saying_button,
-    "part": _part_of_when, "two_digits": _two_digits,
+    "part": _else_in_when_or_empty, "two_digits": _two_digits,
     "sign_means": _gap_of(lambda usage: lexicon_concept(usage.source[usage.diagnostic.span])),
     "sign_usage": _gap_of(lambda usage:
         _usage(lexicon_concept(usage.source[usage.diagnostic.span]) or "")),

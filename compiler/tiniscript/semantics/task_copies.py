@@ -17,7 +17,7 @@ from tiniscript.semantics import ir
 def copy_defs_per_task(program: ir.Program) -> ir.Program:
     """Return a program that does the same, in which no two tasks share a DEF's values."""
     reachable_defs = _reachable_defs(program)
-    has_own_values = _owns_values(program)
+    has_own_values = _has_own_values_by_def(program)
     procedures: list[ir.Procedure] = []
     variables = list(program.variables)
     numbers_by_task = [_TaskNumbers({}, {}) for _ in reachable_defs]
@@ -68,7 +68,7 @@ class Excess(NamedTuple):
 
 def find_excess(program: ir.Program) -> Excess | None:
     """Return the DEF whose copies a machine has no room for, if there is one."""
-    has_own_values, reachable_defs = _owns_values(program), _reachable_defs(program)
+    has_own_values, reachable_defs = _has_own_values_by_def(program), _reachable_defs(program)
     variables, defs = len(program.variables), len(program.procedures)
     for k, procedure in enumerate(program.procedures):
         tasks_reaching = tuple(
@@ -111,7 +111,7 @@ def _reachable_defs(program: ir.Program) -> list[set[int]]:
     return defs_by_task
 
 
-def _owns_values(program: ir.Program) -> list[bool]:
+def _has_own_values_by_def(program: ir.Program) -> list[bool]:
     """Return for each DEF whether it, or one that it calls, has parameters."""
     has_own_values: list[bool] = []
     for procedure in program.procedures:

@@ -339,15 +339,15 @@ class _Sketch:
             for word in re.findall(r"\w+", text):
                 if word in helper_by_name and f"{word}(" in text:
                     self.needed_helpers[helper_by_name[word]] = None
-            self._names_in(text)
+            self._note_helpers_in(text)
         pending_keys = list(self.needed_helpers)
         while pending_keys:
             text = self.functions.get(pending_keys.pop(), "")
             needed_before = set(self.needed_helpers)
-            self._names_in(text)
+            self._note_helpers_in(text)
             pending_keys += [key for key in self.needed_helpers if key not in needed_before]
 
-    def _names_in(self, text: str) -> None:
+    def _note_helpers_in(self, text: str) -> None:
         for key in re.findall(r"\$([a-z_]+)", text):
             key = key.rstrip("_")
             key = "due" if key == "started" else "move_runs" if key.startswith("move_") and (

@@ -167,7 +167,7 @@ class _Conditions:
         if ending_op:
             device, _, number = comparison
             reversed_comparison = comparison._replace(op=_opposite(ending_op))
-            is_short = all(_lasts_ms(statement) < SHORT_MOVE_MS for statement in loop.body)
+            is_short = all(_duration_ms(statement) < SHORT_MOVE_MS for statement in loop.body)
             fix = (
                 f"WHILE({reversed_comparison})"
                 if is_short and not answer_of(reversed_comparison)
@@ -405,7 +405,7 @@ def _opposite(op: str) -> str:
     return BINARY[OPPOSITES[SIGN_OF[op]]][1]
 
 
-def _lasts_ms(statement: ir.Statement) -> int:
+def _duration_ms(statement: ir.Statement) -> int:
     """Return the duration of a timed move, or 0 if unknown."""
     if not isinstance(statement, ir.Move) or statement.unit:
         return 0
