@@ -165,7 +165,7 @@ BREAKAGES = [
      "A watched move goes back"),
     ("machine", "self.kit.actuators[operands[0]]", "self.kit.actuators[operands[0] & 3]",
      "devices: "),
-    ("machine", "return fits(self.passed)", "return self.passed % WRAP",
+    ("machine", "return result_or_fault(self.passed)", "return self.passed % WRAP",
      "time: TIME is over for good"),
     ("machine", "            self.wait_to(self.passed + 1)",
      "            self.wait_to(self.passed + 1)\n            self.clock = self.now", "late: "),

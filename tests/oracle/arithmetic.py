@@ -34,7 +34,7 @@ def nearest_whole(value: int) -> int:
     return divide(value, 1000)
 
 
-def fits(value: int) -> int:
+def result_or_fault(value: int) -> int:
     """A result, or the fault."""
     if not -(2**31) <= value < 2**31:
         raise Fault("OVERFLOW")
@@ -74,7 +74,7 @@ def next_state(state: int) -> int:
 def random_between(a: int, b: int, state: int) -> int:
     """RANDOM, with a state that has been stepped."""
     low, high = sorted((nearest_whole(a), nearest_whole(b)))
-    return fits(1000 * (low + state % (high - low + 1)))
+    return result_or_fault(1000 * (low + state % (high - low + 1)))
 
 
 def calculate(name: str, a: int, b: int = 0) -> int:
@@ -83,25 +83,25 @@ def calculate(name: str, a: int, b: int = 0) -> int:
         raise Fault("DIVIDE_BY_ZERO")
     match name:
         case "ADD":
-            return fits(a + b)
+            return result_or_fault(a + b)
         case "SUB":
-            return fits(a - b)
+            return result_or_fault(a - b)
         case "MUL":
-            return fits(divide(a * b, 1000))
+            return result_or_fault(divide(a * b, 1000))
         case "DIV":
-            return fits(divide(a * 1000, b))
+            return result_or_fault(divide(a * 1000, b))
         case "MOD":
             return a - b * (a // b)
         case "NEG":
-            return fits(-a)
+            return result_or_fault(-a)
         case "ABS":
-            return fits(abs(a))
+            return result_or_fault(abs(a))
         case "MIN" | "MAX":
             return min(a, b) if name == "MIN" else max(a, b)
         case "ROUND":
             places = nearest_whole(b)
             unit = 10 ** min(max(3 - places, 0), 11)  # half of this is larger than any value
-            return a if places >= 3 else fits(divide(a, unit) * unit)
+            return a if places >= 3 else result_or_fault(divide(a, unit) * unit)
         case "AND":
             return int(a != 0 and b != 0)
         case "OR":

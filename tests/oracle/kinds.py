@@ -102,7 +102,11 @@ class Text:
     def answers(self, start: int, end: int, names: tuple[tuple[str, str], ...]) -> bool:
         """Return whether the expression from `start` to `end` is a yes-no value."""
         depth = 0
-        while end - start > 2 and self.tokens[start].text == "(" and self.closes(start) == end - 1:
+        while (
+            end - start > 2
+            and self.tokens[start].text == "("
+            and self.closing_index(start) == end - 1
+        ):
             start, end = start + 1, end - 1
         for index in range(start, end):
             text = self.tokens[index].text
@@ -112,7 +116,7 @@ class Text:
         is_name = end - start == 1 and self.tokens[start].kind == "word"
         return is_name and self.is_yes_no(self.tokens[start].text, self.around[start], names)
 
-    def closes(self, index: int) -> int:
+    def closing_index(self, index: int) -> int:
         """Return the index of the closing bracket."""
         depth = 0
         for place in range(index, len(self.tokens)):
@@ -129,7 +133,7 @@ class Text:
 
     def arguments(self, index: int) -> list[tuple[int, int]]:
         """Return the ranges of the values in the brackets that begin here."""
-        end, spans, depth = self.closes(index), [], 0
+        end, spans, depth = self.closing_index(index), [], 0
         start = index + 1
         for place in range(index + 1, end):
             text = self.tokens[place].text

@@ -17,12 +17,12 @@ from tests.oracle.arithmetic import (
     answer,
     calculate,
     divide,
-    fits,
     nearest_in_range,
     nearest_whole,
     next_state,
     print_number,
     random_between,
+    result_or_fault,
     time8,
 )
 from tests.oracle.spec_tables import Instruction, decode
@@ -172,7 +172,7 @@ class Run:
             case "PUSH_READ":
                 return self.read(operands[0])
             case "TIME":
-                return fits(self.passed)
+                return result_or_fault(self.passed)
             case "RANDOM":
                 self.random = next_state(self.random)
                 return random_between(popped_values[0], popped_values[1], self.random)
@@ -193,7 +193,7 @@ class Run:
             case "ADD_VAR8" | "ADD_VAR" | "INC_VAR" | "DEC_VAR":
                 by = {"INC_VAR": 1000, "DEC_VAR": -1000, "ADD_VAR8": 1000 * operands[-1]}
                 operand = by[name] if name in by else self.variables[operands[1]]
-                self.variables[operands[0]] = fits(self.variables[operands[0]] + operand)
+                self.variables[operands[0]] = result_or_fault(self.variables[operands[0]] + operand)
             case "READ":
                 self.read(operands[0])
             case "SHOW" | "SHOW_YES_NO":
@@ -320,7 +320,7 @@ class Run:
         per_second = (self.kit.turn if is_turn else self.kit.speed) * power
         if per_second == 0:
             raise Fault("NO_POWER")
-        return fits(divide(100_000 * way, per_second))
+        return result_or_fault(divide(100_000 * way, per_second))
 
     def watch(self, powers: tuple[int, int] | None, time: int | None) -> None:
         """Keep a prepared move; its check begins after the instruction."""

@@ -14,12 +14,12 @@ from tests.oracle.arithmetic import (
     answer,
     calculate,
     divide,
-    fits,
     nearest_in_range,
     nearest_whole,
     next_state,
     print_number,
     random_between,
+    result_or_fault,
 )
 from tests.oracle.ast import Do, Expression, Program, Value
 from tests.oracle.words import Kit
@@ -137,7 +137,7 @@ class Robot:
             speed = self.kit.speed if statement.unit == "CM" else self.kit.turn
             if way > 0 and power == 0:
                 raise Fault("NO_POWER")
-            values[0] = fits(divide(1000 * way * 100, speed * power)) if way > 0 else 0
+            values[0] = result_or_fault(divide(1000 * way * 100, speed * power)) if way > 0 else 0
         return values
 
     def set(self, name: str, value: Value) -> None:
@@ -161,7 +161,7 @@ class Robot:
         if operator == "SENSOR":
             return self.kept[expression.name]
         if operator == "TIME":
-            return fits(self.now)
+            return result_or_fault(self.now)
         first = self.value(expression.parts[0])
         if (operator == "AND" and not first) or (operator == "OR" and first):
             return first  # the right side is not evaluated

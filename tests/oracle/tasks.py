@@ -295,7 +295,7 @@ class TaskRobot(Robot):
         elif word in (*MOVES, "W", *ACTS, "M", "S"):
             values = self.values(statement)
             if word in MOVES:
-                yield from self.is_moving(statement, values)
+                yield from self.moving(statement, values)
             elif word == "W":
                 yield from self.waiting(statement, values[0])
             elif word in ACTS:
@@ -346,7 +346,7 @@ class TaskRobot(Robot):
                 self.who.clock = self.now
                 return
 
-    def is_moving(self, statement: Do, values: list[Value | None]) -> Turns:
+    def moving(self, statement: Do, values: list[Value | None]) -> Turns:
         me = self.who
         time_left = None if values[0] is None else max(0, values[0])
         power = nearest_in_range(nearest_whole(values[1] or 0), 0, 100)
