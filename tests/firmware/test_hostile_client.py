@@ -48,6 +48,8 @@ ROOM_BYTES = 389
 
 
 class Client:
+    codes, lines = CODES, LINES
+
     def __init__(self, seed: int) -> None:
         self.rng = random.Random(seed)
         self.robot = switched_on()
@@ -112,7 +114,7 @@ class Client:
         if fields and fields[0].name == "mode" and payload:
             payload = bytes([rng.choice(MODES)]) + payload[1:]
         if number in (BY_NAME["LIVE"].number, BY_NAME["PROGRAM"].number):
-            payload = payload[:1] + rng.choice(CODES)
+            payload = payload[:1] + rng.choice(self.codes)
         epoch = rng.choice((self.epoch, self.epoch, self.epoch ^ rng.randrange(1, 256)))
         is_stale = epoch != self.epoch
         self.robot.did.clear()
@@ -181,7 +183,7 @@ class Client:
         assert self.robot.is_latched
 
     def send_line(self) -> None:
-        self.put(self.rng.choice(LINES), 5)
+        self.put(self.rng.choice(self.lines), 5)
 
     def send_noise(self) -> None:
         self.put(self.rng.randbytes(self.rng.randrange(1, 90)) + b"\0")
