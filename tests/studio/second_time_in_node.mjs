@@ -1262,21 +1262,32 @@ const PARTS = {
     let delay = () => 5;
     let verdict = '';
     let parts = 0;
+    let checks = 0; // that have begun
     const isRightOn = (robot, text) => ['', robot].includes(/tinibot|liner|$/.exec(text)[0]);
     const python = {
       tryAgain() {},
       async ask(request, bytes) {
+        if (request.do === 'lesson_check') checks += 1;
+        const check = checks;
         const isLast = request.do === 'lesson_go' && (parts -= 1) < 0;
         const own = verdict;
         await later(delay());
         if (request.do === 'lesson_titles') return { lessons: LESSONS };
         if (request.do === 'lesson_steps') return { steps: [{ blocks: [{ kind: 'program', rows: [[`F(${request.number})`]] }], hint: '' }], block_steps: [], taught: [] };
         if (request.do === 'check') return { image: isRightOn(request.robot, new TextDecoder().decode(bytes)) ? '00' : '' };
-        return { verdict: isLast ? own : '', seed: 1, worlds: 2, said: ['said'], block_said: ['said'], spoken: {}, run: isLast && own === 'failed' ? { seed: 1, until_ms: 9 } : null };
+        return { verdict: isLast ? own : '', seed: 1, worlds: 2, said: ['said'], block_said: ['said'], spoken: {}, run: isLast && own === 'failed' ? { seed: 1, until_ms: check } : null };
       },
     };
     let stops = () => {};
-    const driving = { showLesson: () => later(delay()), leaveLesson() {}, stop: () => stops(), play: () => new Promise((resolve) => { stops = resolve; setTimeout(resolve, 200); }) };
+    const driving = {
+      showLesson: () => later(delay()),
+      leaveLesson() {},
+      stop: () => stops(),
+      play({ until_ms: check }) {
+        if (page.byId('lesson_end').hidden || check !== checks) wrong ||= 'the run of a check that is over begins';
+        return new Promise((resolve) => { stops = resolve; setTimeout(resolve, 200); });
+      },
+    };
     const work = { text: '', robot: '', name: '', lesson: '', own: null };
     pageState.view.set('text');
     pageState.robotName.subscribe((robot) => { work.robot = robot; });
@@ -1401,6 +1412,7 @@ const PARTS = {
         if (!isGood) await passes(random.below(400));
       }
       const seen = [readVerdict()];
+      if (wrong) throw new Error(wrong);
       if (!isGood) return { ends: [end], seen };
       for (let k = 0; k < 20; k += 1) {
         await passes(50);
