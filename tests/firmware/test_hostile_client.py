@@ -48,7 +48,8 @@ ROOM_BYTES = 389
 
 
 class Client:
-    codes, lines = CODES, LINES
+    codes: tuple[bytes, ...] = CODES
+    lines: tuple[bytes, ...] = LINES
 
     def __init__(self, seed: int) -> None:
         self.rng = random.Random(seed)

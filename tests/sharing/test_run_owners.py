@@ -130,7 +130,7 @@ def test_no_start_reaches_a_robot_that_was_just_stopped(line: FakeLine, start_in
         assert [cast(ClientRequest[Any], request).message["do"] for request in line.requests] == [
             "status"
         ]
-        assert not server.may_have_run
+        assert not server.may_have_owned_run
 
 
 def test_a_port_with_two_names_is_listed_once(line: FakeLine) -> None:
@@ -191,12 +191,12 @@ def test_a_late_end_event_takes_no_owner_from_the_next_run(
     line.begin_run()
     line.post_event(DoneEvent(6) if end == "DONE" else event(end))
     wait_for_event(command, end)
-    assert server.has_run
+    assert server.has_owned_run
     line.is_running = False
     line.post_event(DoneEvent(7) if end == "DONE" else event(end))
     wait_for_event(command, end)
     line.is_running = True  # the same number from another client
-    assert not server.has_run
+    assert not server.has_owned_run
 
 
 @pytest.mark.parametrize(

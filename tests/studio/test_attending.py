@@ -18,7 +18,7 @@ class Link:
     """A robot that does what it is asked, refuses it, or calls it no request."""
 
     def __init__(self, rng: Random) -> None:
-        self.has_run = False
+        self.owns_run = False
         self.stop_count = 0
         self.asked: list[Json] = []
         self.open_requests: list[Json] = []
@@ -104,7 +104,7 @@ def test_each_request_has_one_end_and_each_stop_stops_once(seed: int) -> None:
         match "beat" if is_over else rng.choice(actions):
             case "wait":
                 now_s += rng.choice((0.1, ATTENDED_S + 0.1, LATCH_S, LEFT_S + 0.1))
-                link.has_run = rng.random() < 0.7
+                link.owns_run = rng.random() < 0.7
             case "press":
                 page.stop_count += 1
             case "connect":
@@ -136,7 +136,7 @@ def test_each_request_has_one_end_and_each_stop_stops_once(seed: int) -> None:
             expected_stops = int(wants_stop)
             if now_s - heard_s <= ATTENDED_S:
                 is_told = False
-            elif link.has_run and not is_told:
+            elif link.owns_run and not is_told:
                 expected_stops, is_told = expected_stops + 1, True
             attending.attend(cast(RobotLink, link), 0)
             wants_stop = False

@@ -221,8 +221,8 @@ def test_a_port_is_opened_once_those_before_have_left_it(
 class PlayedLink:
     """A link whose events come one at a time; `stop` does nothing but count."""
 
-    def __init__(self, clock: list[float], has_run: bool, events: list[str | None]) -> None:
-        self.clock, self.has_run, self.events = clock, has_run, events
+    def __init__(self, clock: list[float], owns_run: bool, events: list[str | None]) -> None:
+        self.clock, self.owns_run, self.events = clock, owns_run, events
         self.stop_count = self.news_count = 0
 
     def news(self, timeout_s: float = 0.0) -> list[dict[str, Any]]:
@@ -251,7 +251,7 @@ def test_a_page_hears_of_its_stop_before_it_hears_that_it_is_over(
         start_s = clock[0]
         hosted._part_from_robot(link)  # type: ignore[arg-type]
         told_events = [item["event"] for item in hosted.attending._news]
-        if not link.has_run:
+        if not link.owns_run:
             assert (told_events, link.stop_count, hosted.is_unconfirmed) == ([], 0, False)
             continue
         ends = [k for k in range(1, 5) if events[k] in ("STOPPED", "LOST")]

@@ -34,7 +34,7 @@ RUN_REQUEST = {"do": "upload", "runs": True}
 class CountedLink:
     """A robot that obeys at once."""
 
-    has_run = False
+    owns_run = False
 
     def __init__(self, note_action: Callable[[str, int], None]) -> None:
         self._note_action = note_action

@@ -122,6 +122,6 @@ def test_the_run_of_a_page_is_tracked_until_its_end(seed: int) -> None:
                 news["is_program"] for news in link.news() if news.get("event") == "STARTED"
             ]
             assert is_program_values == [run in own_programs for run in boot_and_runs]
-            assert link.has_run == (robot.pending_request is not None or robot.runs_own is True)
+            assert link.owns_run == (robot.pending_request is not None or robot.runs_own is True)
             own_runs += robot.runs_own is True
     assert own_runs

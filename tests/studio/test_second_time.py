@@ -57,16 +57,16 @@ class NotingLink:
     """A robot that obeys at once, and runs until it is stopped."""
 
     def __init__(self) -> None:
-        self.has_run = False
+        self.owns_run = False
         self._news: list[Json] = []
 
     def stop(self) -> None:
-        self.has_run = False
+        self.owns_run = False
         Room.actions.append(("stop", Room.now_ms))
         self._news.append({"event": "STOPPED"})
 
     def ask(self, request: Json) -> None:
-        self.has_run = True
+        self.owns_run = True
         Room.actions.append(("run", Room.now_ms))
         self._news.append({"id": request["id"], "ok": True})
 
@@ -122,7 +122,7 @@ class ThreadlessRobot:
         self.attending.queue_news([{"over": reason}])
 
     def _stop(self) -> None:
-        if self.link.has_run:
+        if self.link.owns_run:
             self.link.stop()
 
     def step(self) -> None:
@@ -251,7 +251,7 @@ def test_nothing_starts_after_a_stop_for_all_at_any_time(hosting: Hosting, seed:
         action_count_before = len(Room.actions)
         for robot in Room.robots:
             robot.step()
-            assert not (robot.link.has_run and Room.now_ms < latched_until_ms)
+            assert not (robot.link.owns_run and Room.now_ms < latched_until_ms)
         if Room.now_ms % BEAT_MS == 0:
             for page in pages:
                 page.turn()
@@ -300,7 +300,7 @@ def test_earlier_users_of_a_port_do_not_affect_later_ones(hosting: Hosting, seed
             if driven_robot is not None and rng.random() < 0.1:
                 page.stop()
                 driven_robot.step()
-                assert not driven_robot.link.has_run
+                assert not driven_robot.link.owns_run
         assert not Room.unwaited_pairs
     assert stopped_ms and len(Room.robots) > 20
     assert len({(robot.tab, robot.connection) for robot in Room.robots}) == len(Room.robots)
@@ -334,10 +334,10 @@ def test_each_silence_of_a_page_stops_its_robot_once(seed: int) -> None:
             Room.now_ms += LOOK_MS
             if is_heard:
                 attending.on_beat([], 0)
-            was_driving, call_count = link.has_run, len(Room.actions)
+            was_driving, call_count = link.owns_run, len(Room.actions)
             is_silent = attending.silent_s > ATTENDED_S
             attending.attend(cast(RobotLink, link), 0)
-            assert link.has_run == (was_driving and not is_silent)
+            assert link.owns_run == (was_driving and not is_silent)
             stops = [action for action, _ in Room.actions[call_count:]]
             assert stops == (["stop"] if was_driving and is_silent else [])
             silences += len(stops)
@@ -368,7 +368,7 @@ class HeldClient:
         assert HeldClient.has_emptied.wait(HANG_LIMIT_S)
         HeldClient.is_held = goes_on()
 
-    def close(self, has_run: bool) -> None:
+    def close(self, owns_run: bool) -> None:
         """Do nothing, because no run of the page is affected."""
 
 

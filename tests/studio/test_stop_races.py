@@ -138,7 +138,7 @@ def test_a_robot_that_misses_a_stop_is_reported() -> None:
 class LateLink:
     """A robot that confirms a stop after some polls, or never; its earlier reports wait."""
 
-    has_run = True
+    owns_run = True
 
     def __init__(self, rng: Random) -> None:
         self.now_ms = 0

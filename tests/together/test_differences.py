@@ -78,9 +78,9 @@ def describe(operations: list[Operation]) -> str:
     return ", ".join(rows)
 
 
-@each_row("what, before, after, expected_operations, stay", CASES)
+@each_row("what, before, after, expected_operations, kept_count", CASES)
 def test_equal_parts_are_kept(
-    what: str, before: str, after: str, expected_operations: str, stay: int
+    what: str, before: str, after: str, expected_operations: str, kept_count: int
 ) -> None:
     numbers, new_numbers = count(1), count(1)
     old_tree = parse_tree(before, lambda: f"o.{next(numbers)}")
@@ -88,7 +88,7 @@ def test_equal_parts_are_kept(
     new_tree = apply_change(old_tree, Change("n:1", tuple(operations))).tree
     assert new_tree.shape() == parse_tree(after).shape()
     assert expected_operations in ("*", describe(operations))
-    assert sum(id.startswith("o.") for id in new_tree.subtree_ids()) == stay
+    assert sum(id.startswith("o.") for id in new_tree.subtree_ids()) == kept_count
 
 
 def program(rng: Random, size: int, depth: int = 0) -> list[str]:

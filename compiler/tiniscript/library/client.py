@@ -98,23 +98,23 @@ class Client:
     @property
     def drives_another(self) -> bool:
         """Return whether the robot runs a program that another command started through this one."""
-        return self.server is not None and self.server.has_run
+        return self.server is not None and self.server.has_owned_run
 
     def hold_for_others(self, goes_on: Callable[[], bool] = lambda: True) -> None:
         """Hold the port until they have ended. Raises RobotError if it is lost."""
         while self.holds_for_others and goes_on():
             self.event()
 
-    def close(self, stop_s: float | None = None, has_run: bool = False) -> None:
+    def close(self, stop_s: float | None = None, must_stop_run: bool = False) -> None:
         """Close the port. First stop the runs of the server's clients, or possible ones if
-        `may_have_run`: wait `stop_s` for that, by default as long as a stop may take.
+        `must_stop_run`: wait `stop_s` for that, by default as long as a stop may take.
         """
         try:
             if self.server is not None:
                 self.server.close()  # until then a client may start a run
                 # Its client can no longer stop the run.
-                has_run = has_run or self.server.may_have_run
-            if has_run and not self.connection.has_ended:
+                must_stop_run = must_stop_run or self.server.may_have_owned_run
+            if must_stop_run and not self.connection.has_ended:
                 self.stop(stop_s)
         finally:
             self.connection.close()

@@ -155,7 +155,7 @@ class Attending:
         self._apply_news(link.news(timeout_s))
         if self.is_attended:
             self._is_silent = False
-        elif link.has_run and not self._is_silent:
+        elif link.owns_run and not self._is_silent:
             self._is_silent = True
             link.stop()
 

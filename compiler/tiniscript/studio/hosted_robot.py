@@ -71,7 +71,7 @@ class HostedRobot:
     def is_running(self) -> bool:
         """Return whether a run that the page has started may be running."""
         link = self._link
-        return link is not None and not self.has_ended and link.has_run
+        return link is not None and not self.has_ended and link.owns_run
 
     @property
     def is_parting(self) -> bool:
@@ -127,7 +127,7 @@ class HostedRobot:
             raise
         finally:
             self.has_ended = True
-            client.close(has_run=self._link is not None and self._link.has_run)
+            client.close(must_stop_run=self._link is not None and self._link.owns_run)
 
     def _wait_for_port(self) -> None:
         """Wait for those before, as long as their stops may take."""
@@ -149,7 +149,7 @@ class HostedRobot:
         assert isinstance(client.connection, PortConnection)
         session = client.connection.session
         session.sends_heartbeat = lambda: (
-            self.is_attended or (session.is_running and not link.has_run)
+            self.is_attended or (session.is_running and not link.owns_run)
         )
 
     def _meet(self, client: Client) -> bool:
@@ -172,7 +172,7 @@ class HostedRobot:
 
     def _part_from_robot(self, link: RobotLink) -> None:
         """Stop what the page has started, and tell it of that before it hears that it is over."""
-        if not link.has_run:
+        if not link.owns_run:
             return
         self.attending.queue_news(
             [*link.news(), {"event": "STOPPING"}]

@@ -171,7 +171,7 @@ def _text_of(block: dict[str, Any]) -> str:
 
 def _without_blanks(block: Block) -> dict[str, Any]:
     """Return a block without the blanks that are filled in on paper."""
-    rows = [[row.removesuffix(" ____") for row in texts] for texts in block.rows]
+    rows = [[cell.removesuffix(" ____") for cell in row] for row in block.rows]
     return {"kind": block.kind, "rows": rows}
 
 

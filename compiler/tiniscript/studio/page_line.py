@@ -134,7 +134,7 @@ class PageRobot:
         latest (`wakes_ms`, or None), and the news.
         """
         last_ms, self._last_ms = self._last_ms, now_ms
-        if last_ms is not None and now_ms - last_ms > ATTENDED_MS and self.link.has_run:
+        if last_ms is not None and now_ms - last_ms > ATTENDED_MS and self.link.owns_run:
             self.line.now_ms = now_ms
             self.link.stop()
         for request in requests:

@@ -94,8 +94,8 @@ class _Run(NamedTuple):
 
 
 class RobotLink:
-    """A page's part in a connection: one thread uses it. `has_run`: a run that the page has started
-    may still be running."""
+    """A page's part in a connection: one thread uses it. `owns_run`: a run that the page has
+    started may still be running."""
 
     def __init__(self, connection: LinkConnection, language: str) -> None:
         self.language = language
@@ -112,7 +112,7 @@ class RobotLink:
         self._program_run: _Run | None = None  # the newest program that the page has started
 
     @property
-    def has_run(self) -> bool:
+    def owns_run(self) -> bool:
         return self._own_run is not None or any(
             request.pending_request.starts_program for request in self._requests
         )

@@ -15,7 +15,7 @@ from tiniscript.link.messages import NETWORK_BYTES, PASSWORD_BYTES
 from tiniscript.link.wifi import is_class_name
 
 PLAIN_PORT, TLS_PORT = 1883, 8883
-DEFAULT_GROUP = "class"  # the group of all robots without one
+DEFAULT_CLASS = "class"  # the class of all robots without one
 
 
 class BrokerAddress(NamedTuple):
@@ -35,9 +35,9 @@ def broker_address(options: Namespace, is_tls: bool = False) -> BrokerAddress:
     return BrokerAddress(match[1].lower(), port)
 
 
-def group_name(options: Namespace) -> str:
+def class_name(options: Namespace) -> str:
     """Return the name of the class. Raises CommandError."""
-    name = DEFAULT_GROUP if options.group is None else str(options.group)
+    name = DEFAULT_CLASS if options.group is None else str(options.group)
     if not is_class_name(name):
         raise CommandError(2, "class_bad_name", found=printable_name(name) or "''")
     return name

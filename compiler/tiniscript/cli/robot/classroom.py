@@ -47,7 +47,7 @@ class Classroom:
         self.options = options
         self.language = language
         self.address = broker_options.broker_address(options, options.tls)
-        self.group = broker_options.group_name(options)
+        self.class_name = broker_options.class_name(options)
         self.broker = self._connect(options)
 
     def _connect(self, options: Namespace) -> Broker:
@@ -70,14 +70,14 @@ class Classroom:
         """Return the robots that the broker knows, including those that have left."""
         with convert_port_error(f"mqtt://{self.address}"):
             try:
-                known_robots = self.broker.list_robots(self.group)
+                known_robots = self.broker.list_robots(self.class_name)
             finally:
                 for topic, size in self.broker.skipped_topics.items():
                     say_aside(
                         "class_skipped", self.language, topic=printable_name(topic), bytes=size
                     )
         if not any(robot.is_here for robot in known_robots):
-            raise CommandError(3, "class_empty", group=self.group, host=str(self.address))
+            raise CommandError(3, "class_empty", group=self.class_name, host=str(self.address))
         return known_robots
 
     def options_for(self, present_robots: list[RobotPresence], verb: str = "class") -> Namespace:
@@ -88,7 +88,7 @@ class Classroom:
         from tiniscript.link.transports.broker import port_of
 
         ports = [
-            port_of(*self.address, self.group, robot.id)
+            port_of(*self.address, self.class_name, robot.id)
             for robot in present_robots
             if robot.is_here
         ]
@@ -133,12 +133,14 @@ def stop(classroom: Classroom) -> int:
     is_published = False
     for _ in range(STOP_MESSAGES):
         with suppress(OSError):
-            is_published = classroom.broker.stop(classroom.group) or is_published
+            is_published = classroom.broker.stop(classroom.class_name) or is_published
     try:
         known_robots = classroom.present_robots()
     except CommandError:
         if is_published:
-            say_aside("class_stop_sent", classroom.language, group=printable_name(classroom.group))
+            say_aside(
+                "class_stop_sent", classroom.language, group=printable_name(classroom.class_name)
+            )
         raise
     target_options = classroom.options_for(known_robots, "stop")
     return run_together(

@@ -30,9 +30,9 @@ _PEM = r"-----BEGIN CERTIFICATE-----.+?-----END CERTIFICATE-----"
 def broker_settings(options: Namespace, language: str) -> BrokerSettings:
     """Return the broker settings of the options; the password is asked for. Raises CommandError."""
     is_tls = bool(options.tls)
-    broker_address, group_name = (
+    broker_address, class_name = (
         broker_options.broker_address(options, is_tls),
-        broker_options.group_name(options),
+        broker_options.class_name(options),
     )
     ip_address = _resolve(broker_address)
     is_host_name = not re.fullmatch(r"[0-9.]+", broker_address.host)
@@ -44,7 +44,7 @@ def broker_settings(options: Namespace, language: str) -> BrokerSettings:
     user, password = broker_options.ask_user(options, language)
     name = broker_address.host.encode() if is_host_name else b""
     return BrokerSettings(
-        ip_address.packed, broker_address.port, group_name, user, password, name, tls
+        ip_address.packed, broker_address.port, class_name, user, password, name, tls
     )
 
 
@@ -138,8 +138,8 @@ def tell_wifi_state(
     """
     state = _state(wifi_reply)
     key = f"broker_{state.lower()}" if wifi_reply.network else "broker_none"
-    group_name = printable_name(wifi_reply.network.decode("utf-8", "replace"))
-    sentence = connection.text(key, address=name or address(wifi_reply), group=group_name)
+    class_name = printable_name(wifi_reply.network.decode("utf-8", "replace"))
+    sentence = connection.text(key, address=name or address(wifi_reply), group=class_name)
     if command and state == "READY":
         sentence += connection.text("broker_all", command=command)
     print(sentence)
@@ -155,7 +155,7 @@ def _class_command(options: Namespace) -> str:
         "--broker",
         broker_address.host if broker_address == default_address else str(broker_address),
     ]
-    words += ["--class", broker_options.group_name(options)]
+    words += ["--class", broker_options.class_name(options)]
     if options.user is not None:
         words += ["--user", options.user]
     if options.tls:

@@ -120,7 +120,7 @@ class Server:
         self._thread.start()
 
     @property
-    def has_run(self) -> bool:
+    def has_owned_run(self) -> bool:
         """Return whether a client owns the current run, which ends with that client."""
         owner = self._owner
         return owner is not None and self._connection.runs(owner[1])
@@ -130,18 +130,18 @@ class Server:
         """Return whether a client drives the robot or is about to, and its command ends with the
         run.
         """
-        return self.may_have_run or any(
+        return self.may_have_owned_run or any(
             client.verb in _DRIVING_VERBS for client in list(self._clients)
         )
 
     @property
-    def may_have_run(self) -> bool:
-        """Return whether `has_run`, or a request for such a run is under way. `close` freezes the
-        answer.
+    def may_have_owned_run(self) -> bool:
+        """Return whether `has_owned_run`, or a request for such a run is under way. `close` freezes
+        the answer.
         """
         clients = list(self._clients)
         requests = [request for client in clients for request in list(client.requests.values())]
-        return self.has_run or any(
+        return self.has_owned_run or any(
             request.pending_request.outcome is None
             and request.pending_request.starts_program
             and not request.is_detached
@@ -342,7 +342,7 @@ class Server:
         while self._told_events:
             time_ms, event = self._told_events.popleft()
             # a late end may belong to the previous run
-            if event.name in _ENDING_EVENTS and self._owner is not None and not self.has_run:
+            if event.name in _ENDING_EVENTS and self._owner is not None and not self.has_owned_run:
                 self._owner = None
             for client in list(self._clients):
                 if client.verb:
