@@ -114,6 +114,20 @@ def test_errors_of_one_client_do_not_affect_the_next(make: Make, disturbance: st
     assert owner_time_ms(robot, make, keys) <= usual_ms + 30  # a stop is released first
 
 
+@pytest.mark.parametrize("make", TRANSPORTS)
+def test_a_stop_that_waits_for_earlier_bytes_leaves_with_its_client(make: Make) -> None:
+    """It is behind so many bytes that the robot has not taken it when its client leaves."""
+    for byte_count in range(200, 801, 100):
+        robot, end, _ = far_owner(keys := Keys())
+        end.leave()
+        talk(robot, [], AUTHORITY_MS + 100)
+        end = make(robot)
+        talk(robot, [(end, RawClient(b"x" * byte_count + b"\nS\n"))], 1)
+        end.leave()
+        talk(robot, [], 5)
+        owner_time_ms(robot, make, keys)  # it drives
+
+
 @pytest.mark.sampled("make")
 @pytest.mark.parametrize("make", TRANSPORTS[:2])
 @pytest.mark.parametrize("typed_bytes", [b"OK+CONN", b"\0si|", b"SI|LOOP(2)", b"FOO(1)\n"])

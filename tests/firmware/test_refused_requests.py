@@ -17,6 +17,7 @@ from tests.firmware.test_hostile_client import (
     LINES,
     MODES,
     REQUESTS,
+    STATUS_BUSY,
     STATUS_OK,
     Client,
 )
@@ -28,13 +29,13 @@ from tiniscript.bytecode.opcodes import BY_NAME as BY_OP
 from tiniscript.link.frames import decode_frame
 from tiniscript.link.messages import BY_NAME, MOST_BREAKPOINTS, RUN, STATUSES, payload_bytes, sizes
 
-SEEDS = 12  # seeds of the tests; a campaign runs more
+SEEDS = 24  # seeds of the tests; a campaign runs more
 TURN_COUNT = 60
 LARGEST_NUMBER = 63
 NAMES = [message.name for message in REQUESTS if message.name not in ("HELLO", "PING", "STOP")]
+LENGTHS = (1, 200, 388, 389, 390, 700)  # bytes of code: the robot has room for 389
 ENDLESS_CODE = image_of("SI|N = 0;LOOP(FOREVER);M(40, 30);W(0.02);N = N + 1;END_LOOP").code
-# After these, all is as before. BUSY and the refusals of an image may end a run, whose memory they
-# need.
+# After these, all is as before.
 REFUSALS = {
     STATUSES[name]
     for name in (
@@ -42,6 +43,8 @@ REFUSALS = {
         "NOT_OWNER", "HOLD_BUTTON", "HELD_BACK", "NO_BREAKPOINTS", "NO_REMOTE", "NO_READINGS",
     )
 }  # fmt: skip
+# A refusal of these leaves the image before intact. BUSY may end a run, so that saving can end.
+IMAGE_NUMBERS = {BY_NAME[name].number for name in ("LIVE", "PROGRAM", "BEGIN")}
 EARLY_REFUSALS = {STATUSES[name] for name in ("UNKNOWN_MESSAGE", "BAD_LENGTH", "STALE")}
 
 
@@ -92,7 +95,8 @@ def draw_request(rng: random.Random, name: str, client: Client) -> tuple[int, by
     if name in ("LIVE", "PROGRAM", "START", "BEGIN"):
         mode = bytes([rng.choice(MODES)])
         code = rng.choice((*client.codes, rng.randbytes(9)))
-        header = pack("SI", 0, code)[2:10]
+        header = pack("SI", 0, bytes(rng.choice(LENGTHS)))[2:10]
+        header = header[:3] + bytes([rng.choice((14, 14, 13, 15, 255))]) + header[4:]
         rest = {"START": b"", "BEGIN": rng.choice((header, header, rng.randbytes(8)))}
         payload = mode + rest.get(name, code)
     if name == "TRIM" and rng.random() < 0.5:
@@ -105,6 +109,11 @@ def draw_request(rng: random.Random, name: str, client: Client) -> tuple[int, by
     is_stale = rng.random() < 0.15
     payload = payload[: payload_bytes(LARGEST_NUMBER)]
     return message.number, payload, client.epoch ^ (rng.randrange(1, 256) if is_stale else 0)
+
+
+def is_refusal(number: int, status: int) -> bool:
+    is_early = number in IMAGE_NUMBERS and status not in (STATUS_OK, STATUS_BUSY)
+    return status in REFUSALS or is_early
 
 
 def difference(twins: tuple[Twin, Twin], number: int, status: int) -> str:
@@ -128,7 +137,7 @@ def play(seed: int) -> None:
         name = name if rng.random() < 0.5 else rng.choice(NAMES)  # often again
         number, payload, epoch = draw_request(rng, name, second)
         status = second.compared_status(number, payload, epoch)
-        if status in REFUSALS:
+        if is_refusal(number, status):
             # A request of the right form takes a half-typed line's memory.
             harmless = "PING" if status in EARLY_REFUSALS else "TRIM"
             assert first.compared_status(BY_NAME[harmless].number, b"", first.epoch) == STATUS_OK

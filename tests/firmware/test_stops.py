@@ -11,6 +11,7 @@ from typing import Any
 
 import pytest
 
+from tests.firmware.test_hostile_client import Client
 from tests.machines.host_firmware import HostFirmware
 from tests.support.button_states import STATES, Table, save_typed, store_trim
 from tests.support.images import image_of
@@ -26,7 +27,7 @@ from tests.support.robot_on_host import (
 )
 from tiniscript.link.connection import PendingRequest
 from tiniscript.link.frames import Frame, decode_frame, encode_frame
-from tiniscript.link.messages import BY_NAME
+from tiniscript.link.messages import BY_NAME, RUN, STATE_STOPPED
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
 
@@ -55,6 +56,7 @@ def leave_live(robot: HostFirmware, session: Session) -> None:
     robot.step(flags=8)
 
 
+ENDLESS_CODE = image_of("SI|LOOP(FOREVER);M(40, 30);W(0.02);END_LOOP").code
 STOP_MESSAGE = b"\0" + encode_frame(Frame(BY_NAME["STOP"].number, 99, 0))
 INTERVENING_STOPS: dict[str, Callable[[HostFirmware, Session], object]] = {
     "stopped by zeros": lambda robot, session: robot.step(bytes(4)),
@@ -255,3 +257,46 @@ def test_searching_for_a_lost_robot_does_not_keep_it_driving(
         assert lost_ms is None or robot.now_ms < lost_ms + 1500 or not drives(robot)
     robot.talk(session, 3000)
     assert request is None or request.outcome is not None
+
+
+BEFORE_THE_MAIN_LOOP = 16
+
+
+def put_at_once(client: Client, data: bytes) -> None:
+    """Send bytes that all arrive before the robot's main loop looks, or as usual."""
+    if client.rng.random() < 0.7:
+        client.receive(client.robot.step(data, flags=BEFORE_THE_MAIN_LOOP))
+    else:
+        client.put(data, client.rng.randint(1, 3))
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_nothing_sent_before_a_stop_acts_after_it(seed: int) -> None:
+    """Whatever waits when a stop comes, also while the robot is stopped already."""
+    client = Client(seed)
+    rng = client.rng
+    client.send_hello()
+    for _ in range(40):
+        burst, must_stand = b"", False
+        for _ in range(rng.randint(2, 6)):
+            name = rng.choice(("CLEAR", "CLEAR", "LIVE", "PING", "STOP", "zeros", "zeros"))
+            if name == "zeros":
+                burst += bytes(4)
+            else:
+                payload = bytes([RUN]) + ENDLESS_CODE if name == "LIVE" else b""
+                client.seq = (client.seq + 1) % 256
+                number = BY_NAME[name].number
+                frame = encode_frame(Frame(number, client.seq, client.epoch, payload))
+                burst += (b"" if burst else client.zero()) + frame
+            must_stand = name == "zeros" or (must_stand and name != "CLEAR")
+            if rng.random() < 0.3:
+                put_at_once(client, burst)
+                burst = b""
+        put_at_once(client, burst)
+        client.put(b"", 30)
+        if must_stand:
+            assert client.ask_by_name("STATUS")[1] == STATE_STOPPED
+            client.robot.did.clear()  # it lacks what was done before the main loop looked
+            client.put(b"", 100)
+            assert client.robot.is_latched and client.robot.did == []
+        client.ask_by_name(rng.choice(("PING", "CLEAR")))

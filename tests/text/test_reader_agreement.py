@@ -9,6 +9,7 @@ from __future__ import annotations
 import random
 import re
 from collections import Counter
+from itertools import product
 
 import pytest
 
@@ -35,6 +36,24 @@ SHORT_BUFFER = 389 - 15
 # Numbers for the tests; a commit runs a part, a campaign more.
 PROGRAMS, BROKEN_TEXTS, SOUPS = 400, 4, 3000
 TRACED_ONE_OF = 10  # a campaign runs one of so many programs
+
+
+ARMS = [
+    f"{condition};{body};"
+    for condition in ("(X > 1)", "(DISTANCE > 1)")
+    for body in ("S", "DISTANCE")
+]
+
+
+@pytest.mark.parametrize("arm_count", [1, 2, 3])
+def test_a_reading_is_known_after_arms_that_all_have_taken_it(arm_count: int) -> None:
+    """Every combination of arms that read a sensor, in their condition or after it, or do not."""
+    kit = robots.load("tinibot").kit
+    for arms in product(ARMS, repeat=arm_count):
+        for last_arm in ("", "ELSE;S;", "ELSE;DISTANCE;"):
+            text = f"SI|X = 1;IF{'ELSEIF'.join(arms)}{last_arm}ENDIF;X = DISTANCE\n"
+            answer = check_bytes(text.encode(), kit)
+            assert answer is not None and answer.is_program
 
 
 def texts_of(seed: int, broken_count: int) -> tuple[Kit, bytes, Senses, list[bytes]]:
