@@ -2,13 +2,13 @@
 // of the lists. Prints for each tap the kind of the block, where it went, and the first law that does not hold.
 
 import { blocklyInNode } from './blockly_in_node.mjs';
-import { chanceOf, freshPage, learns, passes, playsNavigator, words } from './page_in_node.mjs';
+import { chanceOf, freshPage, loadTexts, replaceNavigator, wait, words } from './page_in_node.mjs';
 
 globalThis.innerWidth = 390;
 const { blockly, seen } = blocklyInNode();
 const page = freshPage({ blockly });
-playsNavigator({});
-await learns(page);
+replaceNavigator({});
+await loadTexts(page);
 (await page.load('page/page_state.js')).pageState.robotName.set('tinibot');
 globalThis.CSSStyleSheet = class { replaceSync() {} };
 document.adoptedStyleSheets = [];
@@ -64,6 +64,6 @@ function row(seed) {
   return { kind: item.type, where, wrong: wrong[0] ?? '' };
 }
 
-await passes(100);
+await wait(100);
 for (let seed = 1; seed <= Number(words[0]); seed += 1) console.log(JSON.stringify(row(seed)));
 process.exit(0);

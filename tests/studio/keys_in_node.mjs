@@ -1,20 +1,20 @@
 // node keys_in_node.mjs SOURCES MADE WAY: a hand at a stick that moves all the time, over a way to a robot, on a clock of the
 // script. Prints as JSON when each word of it was sent, and what it says.
 
-import { freshPage, later, learns, now, passes, playsFetch, playsNavigator, words } from './page_in_node.mjs';
+import { freshPage, later, loadTexts, now, replaceFetch, replaceNavigator, wait, words } from './page_in_node.mjs';
 
 const sent = [];
 const keep = (asked) => sent.push(...asked.filter((item) => item.do === 'keys').map(({ y }) => [now(), y]));
 const answers = (value) => ({ ok: true, status: 200, json: async () => value });
 const heard = { onEvent() {}, onEnd() {} };
-playsNavigator({});
+replaceNavigator({});
 const page = freshPage();
-await learns(page);
+await loadTexts(page);
 const ways = {
   // Through `tsc studio`, which answers at once; how many times it is asked is counted.
   async host() {
     let beats = 0;
-    playsFetch(async (_, { body }) => {
+    replaceFetch(async (_, { body }) => {
       const request = JSON.parse(body);
       if (request.do === 'beat') beats += 1;
       keep(request.asked ?? []);
@@ -46,16 +46,16 @@ const ways = {
   },
 };
 const { robot, asked } = await ways[words[0]]();
-await passes(1000);
+await wait(1000);
 sent.length = 0;
 const before = asked();
 let answered = 0;
 for (let k = 1; k <= 1000; k += 1) {
   robot.press({ keys: 0, x: 0, y: k }).then(() => (answered += 1));
-  await passes(5);
+  await wait(5);
 }
 robot.press({ keys: 0, x: 0, y: 0 });
 const released = now();
-await passes(1000);
+await wait(1000);
 console.log(JSON.stringify({ sent, asked: asked() - before, answered, released, over: robot.isOver }));
 process.exit(0);

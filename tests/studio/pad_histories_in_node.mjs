@@ -2,7 +2,7 @@
 // go: all that is held, and nothing else, is told to the robot that is driven. A plain model says what is held. Prints what
 // each seed has done.
 
-import { chanceOf, freshPage, learns, now, passes, playsNavigator, words } from './page_in_node.mjs';
+import { chanceOf, freshPage, loadTexts, now, replaceNavigator, wait, words } from './page_in_node.mjs';
 
 const NOTHING = { keys: 0, x: 0, y: 0 };
 const SIDES = { side_virtual: 'driving', side_real: 'link', side_lesson: 'driving' };
@@ -45,7 +45,7 @@ class Held {
 async function history(seed) {
   const random = chanceOf(seed);
   let gamepads = [], looks = 0;
-  playsNavigator({ getGamepads: () => { looks += 1; return gamepads; } });
+  replaceNavigator({ getGamepads: () => { looks += 1; return gamepads; } });
   const page = freshPage();
   const Part = globalThis.HTMLElement;
   Part.prototype.getBoundingClientRect = () => ({ left: 0, top: 0, width: SIZE, height: SIZE });
@@ -54,7 +54,7 @@ async function history(seed) {
   page.byId('link').append(page.byId('link_said'), page.byId('link_rest'));
   const styles = {};
   page.byId('pad_thumb').style.setProperty = (name, value) => { styles[name] = value; };
-  await learns(page);
+  await loadTexts(page);
   const { pageState } = await page.load('page/page_state.js');
   const { REMOTE_DEVICES } = await page.load('page/words.js');
   const { text } = await page.load('page/texts.js');
@@ -290,7 +290,7 @@ async function history(seed) {
     const [looksBefore, logged] = [looks, log.length];
     const waits_ms = random.of([FRAME_MS + 1, FRAME_MS + 1, 60, 250, 700]);
     const begins_ms = now();
-    await passes(waits_ms);
+    await wait(waits_ms);
     sees();
     told();
     const frames = Math.ceil(waits_ms / FRAME_MS);

@@ -1,11 +1,11 @@
 // node pad_in_node.mjs SOURCES MADE STORY: plays what hands do at the page's remote control, on a clock of the script.
 // Prints as JSON what each robot was told: when, its side, and what is held.
 
-import { freshPage, learns, now, passes, playsNavigator, words } from './page_in_node.mjs';
+import { freshPage, loadTexts, now, replaceNavigator, wait, words } from './page_in_node.mjs';
 
 const story = JSON.parse(words[0]);
 let gamepads = [];
-playsNavigator({ getGamepads: () => gamepads });
+replaceNavigator({ getGamepads: () => gamepads });
 const page = freshPage();
 const Part = globalThis.HTMLElement;
 Object.defineProperty(globalThis, 'Element', { value: Part, configurable: true });
@@ -16,7 +16,7 @@ Part.prototype.closest = function closest() { return this.isTaken ? this : null;
 const heard = new EventTarget();
 document.addEventListener = heard.addEventListener.bind(heard);
 document.visibilityState = 'visible';
-await learns(page);
+await loadTexts(page);
 const { pageState } = await page.load('page/page_state.js');
 const { Pad } = await page.load('remote/pad.js');
 const pad = new Pad();
@@ -46,7 +46,7 @@ const steps = {
   see: () => { document.visibilityState = 'visible'; heard.dispatchEvent(new Event('visibilitychange')); },
   side: (id) => pageState.sideId.set(id),
   stop: () => page.byId('stop').click(),
-  passes,
+  passes: wait,
 };
 for (const [what, ...args] of story) await steps[what](...args);
 const shown = [...parts, page.byId('pad_stick')].filter((item) => !item.hidden).map((item) => item.dataset.key ?? 'stick');

@@ -36,7 +36,7 @@ registerHooks({
     if (!query) return next(specifier, context);
     const name = Object.keys(PLAYED).find((item) => specifier === item || (!item.startsWith('@') && specifier.endsWith(`/${item.split('/')[1]}`)));
     if (name && PLAYED[name][0] in played) return { url: `played:${name}${query}`, shortCircuit: true };
-    if (specifier.endsWith('/pyodide.asm.mjs')) return { url: `data:text/javascript,await globalThis.played.moduleComes?.()//${query}`, shortCircuit: true };
+    if (specifier.endsWith('/pyodide.asm.mjs')) return { url: `data:text/javascript,await globalThis.played.loadModule?.()//${query}`, shortCircuit: true };
     if (specifier.endsWith('.json')) return { url: `made:${specifier.split('/').at(-1)}${query}`, shortCircuit: true };
     const found = next(specifier, context);
     return found.url.includes('/node_modules/') ? found : { ...found, url: found.url + query };
@@ -59,16 +59,16 @@ let now_ms = 0;
 let timers = [];
 let count = 0;
 const setLater = (callback, ms = 0, ...args) => {
-  timers.push({ at_ms: now_ms + Math.max(0, ms || 0), does: () => callback(...args), number: (count += 1) });
+  timers.push({ at_ms: now_ms + Math.max(0, ms || 0), callback: () => callback(...args), number: (count += 1) });
   return count;
 };
 const clearLater = (number) => {
   timers = timers.filter((item) => item.number !== number);
 };
-const every = (callback, ms) => {
+const setRepeating = (callback, ms) => {
   const number = (count += 1);
-  const plans = () => timers.push({ at_ms: now_ms + ms, does: () => { plans(); callback(); }, number });
-  plans();
+  const plan = () => timers.push({ at_ms: now_ms + ms, callback: () => { plan(); callback(); }, number });
+  plan();
   return number;
 };
 export const now = () => now_ms;
@@ -76,20 +76,20 @@ export const later = (ms, value) => new Promise((resolve) => setLater(() => reso
 const realImmediate = globalThis.setImmediate;
 
 /** Lets all go on that waits for no time; what is imported waits for the real clock. */
-export async function settles() {
+export async function settle() {
   for (let k = 0; k < 3; k += 1) await new Promise((resolve) => realImmediate(resolve));
 }
 
-export async function passes(ms) {
+export async function wait(ms) {
   const end_ms = now_ms + ms;
-  await settles();
+  await settle();
   for (;;) {
     timers.sort((a, b) => a.at_ms - b.at_ms || a.number - b.number);
     if (!timers.length || timers[0].at_ms > end_ms) break;
     const next = timers.shift();
     now_ms = next.at_ms;
-    next.does();
-    await settles();
+    next.callback();
+    await settle();
   }
   now_ms = end_ms;
 }
@@ -108,10 +108,10 @@ class Heard extends EventTarget {
   dispatchEvent(event) {
     let isStopped = false;
     for (const name of ['stopPropagation', 'stopImmediatePropagation']) {
-      const stops = event[name];
+      const stop = event[name];
       event[name] = () => {
         isStopped = true;
-        stops.call(event);
+        stop.call(event);
       };
     }
     const path = [this];
@@ -269,24 +269,24 @@ class Matrix {
   transformPoint({ x, y }) { return { x: this.a * x + this.c * y + this.e, y: this.b * x + this.d * y + this.f }; }
 }
 
-const stands = (name, value) => Object.defineProperty(globalThis, name, { value, configurable: true, writable: true });
-for (const kind of ['', 'Button', 'Canvas', 'Input', 'Select', 'Progress', 'Details', 'Form', 'Dialog', 'TextArea']) stands(`HTML${kind}Element`, Part);
-stands('Element', Part);
-stands('Text', class {}); // what is said in a part is a string
-stands('DOMMatrix', Matrix);
-stands('setTimeout', setLater);
-stands('clearTimeout', clearLater);
-stands('clearInterval', clearLater);
-stands('performance', { now });
-stands('requestAnimationFrame', (callback) => setLater(() => callback(now_ms), 16));
-stands('cancelAnimationFrame', clearLater);
-for (const name of ['ResizeObserver', 'MutationObserver']) stands(name, class { observe() {} });
-stands('matchMedia', () => ({ matches: false }));
-stands('Option', Part);
-stands('self', globalThis);
-stands('location', { hash: '', pathname: '/', search: '', href: 'http://127.0.0.1/' });
-const goesTo = (_, __, address) => { location.hash = new URL(address, location.href).hash; };
-stands('history', { replaceState: goesTo, pushState: goesTo });
+const setGlobal = (name, value) => Object.defineProperty(globalThis, name, { value, configurable: true, writable: true });
+for (const kind of ['', 'Button', 'Canvas', 'Input', 'Select', 'Progress', 'Details', 'Form', 'Dialog', 'TextArea']) setGlobal(`HTML${kind}Element`, Part);
+setGlobal('Element', Part);
+setGlobal('Text', class {}); // what is said in a part is a string
+setGlobal('DOMMatrix', Matrix);
+setGlobal('setTimeout', setLater);
+setGlobal('clearTimeout', clearLater);
+setGlobal('clearInterval', clearLater);
+setGlobal('performance', { now });
+setGlobal('requestAnimationFrame', (callback) => setLater(() => callback(now_ms), 16));
+setGlobal('cancelAnimationFrame', clearLater);
+for (const name of ['ResizeObserver', 'MutationObserver']) setGlobal(name, class { observe() {} });
+setGlobal('matchMedia', () => ({ matches: false }));
+setGlobal('Option', Part);
+setGlobal('self', globalThis);
+setGlobal('location', { hash: '', pathname: '/', search: '', href: 'http://127.0.0.1/' });
+const goTo = (_, __, address) => { location.hash = new URL(address, location.href).hash; };
+setGlobal('history', { replaceState: goTo, pushState: goTo });
 AbortSignal.timeout = () => new AbortController().signal;
 
 /** The elements of a page that a browser makes of its HTML, from the whole of which they hang. */
@@ -321,10 +321,10 @@ export function freshPage(replacements = {}, html = '') {
   const byId = (id) => parts.get(id) ?? parts.set(id, new Part()).get(id);
   played = replacements;
   timers = [];
-  stands('window', Object.assign(new EventTarget(), { setTimeout: setLater, setInterval: every, sessionStorage: new Store(), localStorage: new Store() }));
+  setGlobal('window', Object.assign(new EventTarget(), { setTimeout: setLater, setInterval: setRepeating, sessionStorage: new Store(), localStorage: new Store() }));
   const heard = new Heard();
-  for (const name of ['addEventListener', 'dispatchEvent']) stands(name, heard[name].bind(heard));
-  stands('document', Object.assign(new Heard(), {
+  for (const name of ['addEventListener', 'dispatchEvent']) setGlobal(name, heard[name].bind(heard));
+  setGlobal('document', Object.assign(new Heard(), {
     heard,
     documentElement: whole.children[0] ?? new Part(), body: whole.querySelectorAll('body')[0] ?? new Part(), getElementById: byId, querySelectorAll: (selector) => whole.querySelectorAll(selector),
     createElement: (tag) => Object.assign(new Part(), { localName: tag }), createElementNS: (_, tag) => Object.assign(new Part(), { localName: tag }),
@@ -335,15 +335,15 @@ export function freshPage(replacements = {}, html = '') {
 }
 
 /** The texts of the page are there. */
-export async function learns(page) {
+export async function loadTexts(page) {
   const before = globalThis.fetch;
-  stands('fetch', async () => ({ ok: true, json: async () => JSON.parse(readFileSync(`${made}/texts.json`, 'utf-8')) }));
+  setGlobal('fetch', async () => ({ ok: true, json: async () => JSON.parse(readFileSync(`${made}/texts.json`, 'utf-8')) }));
   await (await page.load('page/texts.js')).setLanguage('en');
-  stands('fetch', before);
+  setGlobal('fetch', before);
 }
 
 /** Somebody chooses a file, which a browser tells of if it is another one than it has there. @param {Part} input @param {any} file */
-export function choosesFile(input, file) {
+export function chooseFile(input, file) {
   const hasFile = () => Boolean(input.files.length);
   Object.defineProperty(input, 'value', { get: () => (hasFile() ? `C:\\fakepath\\${input.files[0].name}` : ''), set: () => { input.files = []; }, configurable: true });
   if (hasFile() && input.files[0].name === file.name) return;
@@ -351,8 +351,8 @@ export function choosesFile(input, file) {
   input.dispatchEvent(new Event('change', { bubbles: true }));
 }
 
-export const playsFetch = (callback) => stands('fetch', callback);
-export const playsNavigator = (value) => stands('navigator', value);
+export const replaceFetch = (callback) => setGlobal('fetch', callback);
+export const replaceNavigator = (value) => setGlobal('navigator', value);
 
 /** What calls it, with what; of each name its answer. */
 export function noting(notes, name, answers = {}) {
@@ -383,14 +383,14 @@ export function virtualRobot(random, isGood) {
   const ends_ms = 300 + random.below(3000);
   let isStopped = false;
   let isHeld = false;
-  const does = isGood ? random.of(['runs', 'runs', 'refused', 'fault']) : random.of(['runs', 'refused', 'breaks', 'fault']);
+  const outcome = isGood ? random.of(['runs', 'runs', 'refused', 'fault']) : random.of(['runs', 'refused', 'breaks', 'fault']);
   return {
-    does,
-    breaks: () => does === 'breaks' && random() < 0.3,
+    outcome,
+    breaks: () => outcome === 'breaks' && random() < 0.3,
     answer(request) {
       const events = [];
       if (request.do === 'power_on') {
-        if (does === 'refused') return { refused: ['no place'] };
+        if (outcome === 'refused') return { refused: ['no place'] };
         events.push([0, 'START']);
         isStopped = false;
         isHeld = request.is_held;
@@ -405,7 +405,7 @@ export function virtualRobot(random, isGood) {
       if (duration_ms && random() < 0.3) events.push([now_ms, `SHOW ${random.below(9)}`, 0]);
       if (duration_ms && random() < 0.2) events.push([now_ms, `BEEP 440 ${random.below(900)}`]);
       if (duration_ms && random() < 0.2) bumps += 1;
-      if (now_ms > ends_ms && does === 'fault') fault = 'STUCK';
+      if (now_ms > ends_ms && outcome === 'fault') fault = 'STUCK';
       return {
         now_ms, began_ms: 0, pose: [0, 0, 0], motors: [0, 0], is_running: !isStopped && now_ms < ends_ms, is_waiting: false,
         is_held: isHeld, fault, fault_at: fault ? 0 : null, at: 0, places: [0], bumps, touches: null, score: null, actuators: [],

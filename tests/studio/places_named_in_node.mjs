@@ -1,10 +1,10 @@
 // node places_named_in_node.mjs SOURCES MADE SEEDS: places in texts of any kind, named for who sees blocks and for who sees text.
 // Prints how many places were named.
 
-import { chanceOf, freshPage, learns, words } from './page_in_node.mjs';
+import { chanceOf, freshPage, loadTexts, words } from './page_in_node.mjs';
 
 const page = freshPage();
-await learns(page);
+await loadTexts(page);
 const { pageState } = await page.load('page/page_state.js');
 const { text } = await page.load('page/texts.js');
 const { labelAt, sentenceAtPlace } = await page.load('blocks/said.js');

@@ -2,10 +2,10 @@
 // code in it is as a block. Prints for each the sentence's parts, and whether a part is what the page shows on a block.
 
 import { readFileSync } from 'node:fs';
-import { freshPage, learns } from './page_in_node.mjs';
+import { freshPage, loadTexts } from './page_in_node.mjs';
 
 const page = freshPage();
-await learns(page);
+await loadTexts(page);
 const { pageState } = await page.load('page/page_state.js');
 const { labelOfCode } = await page.load('blocks/said.js');
 for (const line of readFileSync(0, 'utf-8').split('\n').filter(Boolean)) {

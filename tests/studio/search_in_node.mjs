@@ -3,10 +3,10 @@
 
 import { readFileSync } from 'node:fs';
 import { blocklyInNode } from './blockly_in_node.mjs';
-import { freshPage, playsFetch, words } from './page_in_node.mjs';
+import { freshPage, replaceFetch, words } from './page_in_node.mjs';
 
 const page = freshPage({ blockly: blocklyInNode().blockly });
-playsFetch(async () => ({ ok: true, json: async () => JSON.parse(readFileSync(words[0], 'utf-8')) }));
+replaceFetch(async () => ({ ok: true, json: async () => JSON.parse(readFileSync(words[0], 'utf-8')) }));
 await (await page.load('page/texts.js')).setLanguage('en');
 (await page.load('page/page_state.js')).pageState.robotName.set('tinibot');
 (await page.load('blocks/shapes.js')).setRobot('tinibot');

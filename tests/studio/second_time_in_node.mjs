@@ -5,7 +5,7 @@
 import { readFileSync } from 'node:fs';
 import { pathToFileURL } from 'node:url';
 import { blocklyInNode } from './blockly_in_node.mjs';
-import { chanceOf, choosesFile, compared, freshPage, later, learns, noting, now, passes, playsFetch, playsNavigator, PROGRAM, settles, sources, virtualRobot, words } from './page_in_node.mjs';
+import { chanceOf, chooseFile, compared, freshPage, later, loadTexts, noting, now, PROGRAM, replaceFetch, replaceNavigator, settle, sources, virtualRobot, wait, words } from './page_in_node.mjs';
 
 const [part, seeds] = words;
 const unhandled = [];
@@ -24,7 +24,7 @@ const UART_BYTE_MS = 10_000 / 9600; // ten bits
 const PARTS = {
   // A robot by Bluetooth: the same device each time. An HM-10 has room for two writes, and passes bytes on as fast as its UART.
   async bluetooth() {
-    playsNavigator({ bluetooth: {} });
+    replaceNavigator({ bluetooth: {} });
     const page = freshPage();
     const { BluetoothPort } = await page.load('robot/bluetooth.js');
     const device = new EventTarget();
@@ -73,7 +73,7 @@ const PARTS = {
       fails = () => !isGood && random() < 0.15;
       const port = new BluetoothPort(device, 9600);
       const opened = port.open(() => {}, () => notes.push('gone')).then(() => 'open', (error) => error.reason);
-      await passes(100);
+      await wait(100);
       const how = await opened;
       const ends = [how];
       if (how === 'open') {
@@ -82,18 +82,18 @@ const PARTS = {
         for (let k = 0; k < count; k += 1) {
           writes.push(new Uint8Array(1 + random.below(50)).fill(k + 1));
           port.write(writes[k]).then(() => notes.push('done'), () => { notes.push('failed'); ends.push('failed'); });
-          if (random() < 0.5) await passes(random.below(60));
+          if (random() < 0.5) await wait(random.below(60));
         }
-        await passes(500);
+        await wait(500);
         if (isGood && String(sent) !== String(writes.flatMap((data) => [...data]))) throw new Error(`bytes were lost: ${sent}`);
         fails = () => false;
         sent = isGood ? sent : [];
         port.write(new Uint8Array(4)).then(() => notes.push('stopped'), () => notes.push('not stopped'));
-        await passes(100);
+        await wait(100);
         notes.push(...sent);
       }
       port.close().catch(() => notes.push('not closed'));
-      await passes(100);
+      await wait(100);
       if (how === 'open' && !notes.includes('stopped')) throw new Error(`a write failed, and so does STOP: ${notes}`);
       return { ends: [...new Set(ends)], seen: [notes, device.gatt.connected] };
     };
@@ -104,7 +104,7 @@ const PARTS = {
   // closed is free.
   async serial() {
     const page = freshPage();
-    playsNavigator({ serial: {} });
+    replaceNavigator({ serial: {} });
     const { SerialPort } = await page.load('robot/serial.js');
     const failure = (name) => new DOMException(name, name);
     class Device {
@@ -168,7 +168,7 @@ const PARTS = {
       const lineBytes = [], heardBytes = [], ends = [], written = [];
       let goneCount = 0, settledCount = 0;
       const port = new SerialPort(device, 9600);
-      await Promise.all([port.open((bytes) => heardBytes.push(...bytes), () => { goneCount += 1; }), passes(10)]);
+      await Promise.all([port.open((bytes) => heardBytes.push(...bytes), () => { goneCount += 1; }), wait(10)]);
       for (let k = random.below(8); k > 0; k -= 1) {
         const act = random.of(isGood ? ['hears', 'writes', 'reset'] : ['hears', 'hears', 'errs', 'errs', 'writes', 'reset', 'goes', 'stuck']);
         if (act === 'hears') {
@@ -183,7 +183,7 @@ const PARTS = {
         else if (act === 'stuck') device.isStuck = true;
         else device.goes();
         ends.push(act);
-        await passes(act === 'reset' ? 400 : 5);
+        await wait(act === 'reset' ? 400 : 5);
         if (device.isGone) break;
       }
       if (`${heardBytes}` !== `${lineBytes}`) throw new Error(`${lineBytes} were on the line, and ${heardBytes} are heard`);
@@ -191,12 +191,12 @@ const PARTS = {
       if (!device.isStuck && !device.isGone && `${device.taken}` !== `${written}`) throw new Error(`${written} are written, and ${device.taken} taken`);
       if (ends.filter((end) => end === 'reset').length * 2 !== device.signals.length) throw new Error('a board is restarted otherwise than asked');
       const opened = new SerialPort(device, 9600).open(() => {}, () => {}).catch(({ reason }) => reason);
-      await passes(4000);
+      await wait(4000);
       if (await opened !== 'port_busy') throw new Error(`a port that is open is ${await opened}`);
       if (settledCount !== written.length) throw new Error('a write has no end');
       let isFree = false;
       port.close().then(() => { isFree = true; }, () => {});
-      await passes(10_000);
+      await wait(10_000);
       if (!isFree || device.isOpen) throw new Error(`it was closed after ${ends}, and is not free`);
       if (goneCount !== Number(device.isGone)) throw new Error('who closes it hears that it is gone');
       return { ends, seen: [heardBytes, device.taken, device.signals] };
@@ -206,7 +206,7 @@ const PARTS = {
   // A run of the virtual robot.
   async simulator() {
     const page = freshPage();
-    await learns(page);
+    await loadTexts(page);
     const { Simulator } = await page.load('virtual/simulator.js');
     let notes = [];
     let robot = null;
@@ -227,28 +227,28 @@ const PARTS = {
       robot = virtualRobot(random, isGood);
       simulator.speed = random.of([0.1, 0.5, 1, 4]);
       simulator.begin(PROGRAM, 'tinibot', 'w', [], random() < 0.3, isGood ? 0 : random.of([0, 20])); // also of a run of a lesson
-      await passes(50);
+      await wait(50);
       const setPoints = () => {
         const breakpoints = [random.below(9)], isUnderWay = ['running', 'paused'].includes(simulator.phase);
         const before = notes.length;
         simulator.setBreakpoints(breakpoints);
         if (isUnderWay) checkPoints = async () => {
-          for (let k = 0; k < 50 && !simulator.failure && !notes.slice(before).some((note) => note.do === 'breakpoints'); k += 1) await passes(20);
+          for (let k = 0; k < 50 && !simulator.failure && !notes.slice(before).some((note) => note.do === 'breakpoints'); k += 1) await wait(20);
           if (!simulator.failure && `${notes.slice(before).findLast((note) => note.do === 'breakpoints')?.breakpoints}` !== `${breakpoints}`) throw new Error('breakpoints of a run that is under way are not set');
         };
       };
       let checkPoints = async () => {};
       for (let k = random.below(8); k > 0; k -= 1) {
         random.of([() => simulator.pause(), () => simulator.resume(), () => simulator.step(), () => simulator.pressButton(), setPoints, () => {}])();
-        await passes(random.below(400));
+        await wait(random.below(400));
         await checkPoints();
         checkPoints = async () => {};
       }
       const end = random.of(['stop', 'leave', 'wait']);
-      await passes(end === 'wait' ? 4000 : 0);
+      await wait(end === 'wait' ? 4000 : 0);
       simulator.stop();
       if (end === 'leave') simulator.leaveRun();
-      await passes(100);
+      await wait(100);
       if (end === 'leave' && (simulator.state || simulator.trace.length || simulator.phase !== 'off')) throw new Error('it was left, and is seen again');
       return { ends: [end, simulator.failure ? 'failure' : simulator.phase], seen: [notes, simulator.phase] };
     };
@@ -262,15 +262,15 @@ const PARTS = {
   async pupil() {
     const page = freshPage();
     document.documentElement.dataset['class'] = '';
-    playsFetch(async () => { throw new Broken(); });
-    playsNavigator({});
-    await learns(page);
+    replaceFetch(async () => { throw new Broken(); });
+    replaceNavigator({});
+    await loadTexts(page);
     const { Pupil } = await page.load('class/pupil.js');
     const { loadText } = await page.load('page/kept.js');
     const { loadDoneLessons, storeDoneLesson } = await page.load('lesson/progress.js');
     const { pageState } = await page.load('page/page_state.js');
     let room = null;
-    playsFetch((_, { headers, body }) => room.asked(headers['X-TiniScript-Token'], JSON.parse(body)));
+    replaceFetch((_, { headers, body }) => room.asked(headers['X-TiniScript-Token'], JSON.parse(body)));
     const notes = [];
     const panel = { isFree: true, connectByHost: () => notes.push('to the robot'), endWitness() {} };
     const work = { text: 'F(1)', robot: 'tinibot' };
@@ -366,7 +366,7 @@ const PARTS = {
       const pressesStop = async () => {
         const before = stops.length + strayStopCount, isDriven = driver !== '' && !over && ends === 'goes on';
         page.byId('stop').click();
-        await settles();
+        await settle();
         if (stops.length + strayStopCount - before !== Number(isDriven)) throw new Error(`${stops.length + strayStopCount - before} stops are sent, and ${driver || 'nobody'} drives`);
       };
       const changes = {
@@ -393,19 +393,19 @@ const PARTS = {
         nothing: () => {},
       };
       for (let k = random.of([1, 2]); k > 0; k -= 1) join.dispatchEvent(new Event('submit', { cancelable: true }));
-      await passes(30);
+      await wait(30);
       if (joins > 1) throw new Error(`who presses twice is ${joins} pupils`);
       if (hand.hidden) throw new Error('in a class nobody can ask for help');
       if (isGood && random() < 0.5) presses.hand(); // before the class has said how it is
-      await passes(500);
+      await wait(500);
       for (let k = 1 + random.below(12); k > 0; k -= 1) {
         await presses[random.of(Object.keys(presses))]();
-        await passes(random.of([2, random.below(1500)]));
+        await wait(random.of([2, random.below(1500)]));
       }
       if (!isGood && random() < 0.7) random.of([ask, quit, hand]).click(); // whose answer may come after the end
       ends = end;
       for (let k = random.below(isGood ? 1 : 4); k > 0; k -= 1) random.of([ask, quit, hand]).click();
-      while (!isGood && join.hidden) await passes(50 + random.below(50));
+      while (!isGood && join.hidden) await wait(50 + random.below(50));
       if (!isGood) {
         if (![hand, ask, quit, connect, handoutBox, page.byId('side_class')].every(({ hidden }) => hidden)) throw new Error('outside of a class there are its buttons');
         await pressesStop();
@@ -414,11 +414,11 @@ const PARTS = {
       if (!isGood) return { ends: [ends], seen: [] };
       for (let k = random.below(3); k > 0; k -= 1) { // while the one before is on its way
         changes[random.of(Object.keys(changes))]();
-        await passes(2);
+        await wait(2);
       }
       isCalm = true;
       panel.isFree = random() < 0.5;
-      await passes(6000);
+      await wait(6000);
       const seen = notes.map((item) => structuredClone(item));
       const countNotes = (note) => notes.filter((item) => item === note || item[0] === note).length;
       for (const [name, value] of Object.entries(shown())) {
@@ -436,18 +436,18 @@ const PARTS = {
       seen.push([document.documentElement.dataset['pupil'], join.hidden, hand.attributes]);
       if (random() < 0.3 || !handout) handsOut();
       isOffered = true; // also what the pupil before at this page has opened
-      await passes(2500);
+      await wait(2500);
       if (handoutBox.hidden) throw new Error('a pupil misses what the teacher gives to all');
       isCalm = false;
       for (let k = 40; k > 0; k -= 1) { // whoever sees it presses it
         if (k > 38 || !handoutBox.hidden) handoutBox.children[1].click();
-        await passes(100);
+        await wait(100);
       }
       isCalm = true;
-      await passes(2500);
+      await wait(2500);
       if (`${openedTexts}` !== handout.text || hasOpened !== handout.key || !handoutBox.hidden) throw new Error(`${openedTexts} is opened, and the class knows of ${hasOpened}`);
       over = random.of(['', 'kept', 'erased']);
-      await passes(5000);
+      await wait(5000);
       if (over && (!join.hidden || lateCount > 1 || loadText('tiniscript.pupil', 'sessionStorage'))) throw new Error(`it is over, and goes on: ${lateCount}`);
       if (countNotes('empty') !== Number(over === 'erased') || Boolean(loadText('tiniscript.pupil_before')) !== (over !== 'erased')) throw new Error(`${over}: ${countNotes('empty')} ${loadText('tiniscript.pupil_before')}`);
       return { ends: [ends], seen: [seen, document.documentElement.dataset['pupil']] };
@@ -459,7 +459,7 @@ const PARTS = {
   // the browser has no room. A page asks once; what it puts on the screen goes only when somebody takes it away; and the
   // teacher sees what is on the screen.
   async returning() {
-    playsNavigator({});
+    replaceNavigator({});
     const { EditorState } = await import(pathToFileURL(`${sources}/../node_modules/@codemirror/state/dist/index.js`).href);
     let entries = 0;
     return async (random, isGood) => {
@@ -490,11 +490,11 @@ const PARTS = {
         for (const [name, pairs] of Object.entries(stores)) for (const [key, value] of pairs) window[name].setItem(key, value);
         Object.assign(document.documentElement.dataset, { class: '', state: 'stale', image: '' });
         delete document.documentElement.dataset['group'];
-        playsFetch(async () => { throw new Broken(); });
-        await learns(page);
+        replaceFetch(async () => { throw new Broken(); });
+        await loadTexts(page);
         pageRequests = [];
         shownWork = noticeKey = '';
-        playsFetch((_, { body }) => answersTo(JSON.parse(body)));
+        replaceFetch((_, { body }) => answersTo(JSON.parse(body)));
         const { Pupil } = await page.load('class/pupil.js');
         const { Programs } = await page.load('programs/programs.js');
         ({ loadVersions } = await page.load('programs/versions.js'));
@@ -527,7 +527,7 @@ const PARTS = {
         const [join] = page.byId('class_pupil').children;
         for (let k = 0; !join.hidden && k < 50; k += 1) { // one may be lost
           join.dispatchEvent(new Event('submit', { cancelable: true }));
-          await passes(random.below(2500));
+          await wait(random.below(2500));
         }
       };
       const travels = () => later(isCalm ? 5 : 5 + random.below(900));
@@ -581,13 +581,13 @@ const PARTS = {
         await actions[act]();
         isLaw(act);
         for (let step = random.of([0, 1, 1, 3, 12]); step > 0; step -= 1) {
-          await passes(random.below(300));
+          await wait(random.below(300));
           isLaw(act);
         }
       }
       isCalm = true;
       window.localStorage.room = Infinity;
-      await passes(3000 + 2000 * givenTexts.length);
+      await wait(3000 + 2000 * givenTexts.length);
       isLaw('at the end');
       if (teacherList.size) throw new Error(`${[...teacherList]} are not taken`);
       if (knownFields.text !== screen) throw new Error(`the teacher sees ${knownFields.text}, and it is ${screen}`);
@@ -611,7 +611,7 @@ const PARTS = {
       }
     }
     const page = freshPage({ Blocks });
-    await learns(page);
+    await loadTexts(page);
     URL.createObjectURL = (text) => `picture of ${text}`;
     const { Pictures } = await page.load('blocks/drawn.js');
     const python = {
@@ -639,9 +639,9 @@ const PARTS = {
           ends.push(address ? 'made' : 'none');
         });
         if (!isGood && random() < 0.1) pictures.forget(`${stories} ${owner}`);
-        await passes(random.below(300));
+        await wait(random.below(300));
       }
-      await passes(8000);
+      await wait(8000);
       if (maxDrawing > 1) throw new Error(`${maxDrawing} pictures are made at once, for which a STOP waits`);
       return { ends: [...new Set(ends)], seen: came };
     };
@@ -666,7 +666,7 @@ const PARTS = {
       Arena: beginning('arena'), Plot: beginning('plot'), RunAnnouncer: notingClass('announcer'), Sounds: notingClass('sounds'),
       starsText: String, boutEndText: String, bumpSentence: String, WorldChoice: Choice, WorldDrawing: Drawing, replaceOptions() {}, makePictureOption() {}, makeDialPicture() {},
     });
-    await learns(page);
+    await loadTexts(page);
     const { pageState } = await page.load('page/page_state.js');
     const { SimulatorPanel } = await page.load('virtual/simulator_panel.js');
     pageState.robotName.set('tinibot');
@@ -708,7 +708,7 @@ const PARTS = {
     };
     robot = virtualRobot(chanceOf(1), true);
     new SimulatorPanel({ python, work: { world: 'w', sound: true }, whenChecked: async () => PROGRAM, storeCurrentWork() {}, pad: { offerRobot: (side, driven) => notes.push(['pad', side, driven?.remoteWords ?? null]) } });
-    await settles();
+    await settle();
     const line = page.byId('time_at');
     const marked = [];
     Object.assign(page.byId('time_marks'), { clientWidth: 200, clientHeight: 20, getContext: () => ({ fillRect: (x) => marked.push(x) }) });
@@ -719,19 +719,19 @@ const PARTS = {
       types('F(9)');
       setsPoints(random.of([[], [{ line: 1, column: 1, point: {} }]]));
       page.byId('run').click();
-      if (!isGood && robot.does === 'runs' && random() < 0.2) page.byId('run').click(); // twice
+      if (!isGood && robot.outcome === 'runs' && random() < 0.2) page.byId('run').click(); // twice
       for (let k = random.below(6); k > 0; k -= 1) {
-        await passes(100 + random.below(300));
+        await wait(100 + random.below(300));
         marked.length = 0;
         notes.push(observe());
         if (random() < 0.3) {
           setsPoints(random.of([[], [{ line: 1, column: 1, point: {} }], [...pageState.breakpoints.value, { line: 1, column: 1, point: {} }]]));
-          await passes(50);
+          await wait(50);
           checkPoints();
         }
         if (random() < 0.2) {
           types(`F(${random.below(9)})`);
-          await passes(200);
+          await wait(200);
           checkPoints();
           if (pageState.virtualRun.value.ranges.length) throw new Error('it runs in another text');
         }
@@ -744,12 +744,12 @@ const PARTS = {
         } else if (!pressed.hidden && !pressed.disabled) pressed.click();
       }
       const end = random.of(['stop', 'wait', 'again', 'again']); // again: while it runs
-      if (end === 'again') await passes(random.below(40));
-      if (end === 'wait' || isGood) await passes(4000);
+      if (end === 'again') await wait(random.below(40));
+      if (end === 'wait' || isGood) await wait(4000);
       if (end === 'stop' || isGood) page.byId('stop').click();
-      if (end !== 'again' || isGood) await passes(50);
+      if (end !== 'again' || isGood) await wait(50);
       notes.push(observe());
-      return { ends: [end === 'again' ? document.documentElement.dataset['phase'] : end, robot.does], seen: notes.slice(notes.findLastIndex(([name, what]) => name === 'sounds' && what === 'begin')) };
+      return { ends: [end === 'again' ? document.documentElement.dataset['phase'] : end, robot.outcome], seen: notes.slice(notes.findLastIndex(([name, what]) => name === 'sounds' && what === 'begin')) };
     };
   },
 
@@ -790,7 +790,7 @@ const PARTS = {
     }
     const page = freshPage();
     const activation = { hasBeenActive: true };
-    playsNavigator({ userActivation: activation });
+    replaceNavigator({ userActivation: activation });
     Object.assign(window, { AudioContext: Context });
     globalThis.AudioContext = Context;
     const { Sounds } = await page.load('virtual/sounds.js');
@@ -861,7 +861,7 @@ const PARTS = {
           if (context && context.state !== (until_ms > now() ? 'running' : 'suspended')) throw new Error(`after it ${act} the sound is ${context.state} until ${until_ms} at ${now()}`);
         };
         check();
-        await passes(random.of([0, 20, 250, 2990, 3010, 9000]) + random.below(9));
+        await wait(random.of([0, 20, 250, 2990, 3010, 9000]) + random.below(9));
         check();
       }
       activation.hasBeenActive = true;
@@ -872,7 +872,7 @@ const PARTS = {
   // What is said of a STOP: of this page, or of somebody else, after which something is started.
   async stopping() {
     const page = freshPage();
-    await learns(page);
+    await loadTexts(page);
     const { StopNotice } = await page.load('robot/stopping.js');
     const { LINK } = await page.load('page/words.js');
     let notes = [];
@@ -891,12 +891,12 @@ const PARTS = {
       began_ms = now();
       for (let k = 1 + random.below(4); k > 0; k -= 1) {
         actions[random.of(Object.keys(actions))]();
-        await passes(random.below(random.of([LINK.confirm_ms / 2, 2 * LINK.confirm_ms])));
+        await wait(random.below(random.of([LINK.confirm_ms / 2, 2 * LINK.confirm_ms])));
       }
       const end = random.of(isGood ? ['none', 'confirm'] : ['confirm', 'over']);
       if (end === 'confirm') stopping.confirm('SEQUENCE');
       if (end === 'over') notes.push(stopping.end()());
-      if (isGood) await passes(2 * LINK.confirm_ms);
+      if (isGood) await wait(2 * LINK.confirm_ms);
       const seen = [notes, stopping.isOpen, speech.isHeldByStop];
       stopping.forget(); // something is started
       return { ends: [end], seen };
@@ -928,7 +928,7 @@ const PARTS = {
         return failed('flash');
       },
     });
-    await learns(page);
+    await loadTexts(page);
     const { pageState } = await page.load('page/page_state.js');
     const { Flashing } = await page.load('robot/flashing.js');
     const speech = { say: (key) => notes.push(key), sayFailure: (failure) => notes.push(failure.reason) };
@@ -947,9 +947,9 @@ const PARTS = {
       }
       page.byId('flash_write').click();
       if (random() < 0.3) page.byId('flash_write').click();
-      await passes(end === 'cancel' ? 40 : 300);
+      await wait(end === 'cancel' ? 40 : 300);
       if (end === 'cancel') page.byId('flash_cancel').click();
-      await passes(200);
+      await wait(200);
       return { ends: [end], seen: [notes, isFree, chooser.value, page.byId('flash_progress').hidden, page.byId('flash_cancel').hidden] };
     };
   },
@@ -1007,7 +1007,7 @@ const PARTS = {
         if (!error && what === 'learn' && !learntLanguages.has(language)) fails(`${language} is learnt, and is not there`);
       };
       globalThis.name = random.of(['', 'en', 'es']);
-      playsFetch(async (address) => {
+      replaceFetch(async (address) => {
         const name = String(address).replace('./', '');
         if (name.endsWith('.zip') && (loadedFiles.has(name) || fetchCounts.get(name))) fails(`${name} is fetched again`);
         if (learntLanguages.has(name.split('.')[1])) fails(`${name} is fetched again`);
@@ -1020,7 +1020,7 @@ const PARTS = {
         return { ok: !isLost, status: isLost ? 503 : 200, body: null, arrayBuffer: async () => Object.assign(new ArrayBuffer(1), { name: isLost ? `not ${name}` : name }) };
       });
       await page.load('worker.js');
-      await passes(30);
+      await wait(30);
       const isBroken = first !== '' && first !== 'messages.es.json';
       if (ready !== (isBroken ? 'failed' : 'ready')) throw new Error(`without ${first} it is ${ready}`);
       loses = () => random() < 0.3;
@@ -1030,9 +1030,9 @@ const PARTS = {
         const id = (count += 1), messages = `messages.${language}.json`;
         requestsById.set(id, { what, language, messages, at: now(), isUnder: fetchCounts.get(messages) > 0 });
         dispatchEvent(Object.assign(new Event('message'), { data: { id, request: JSON.stringify({ do: what, language, id }) } }));
-        await passes(random.of([0, 5, 50, 200]));
+        await wait(random.of([0, 5, 50, 200]));
       }
-      await passes(500);
+      await wait(500);
       if (wrong) throw new Error(`page ${number}: ${wrong}`);
       if (posted.size !== count) throw new Error(`${count} are asked, and ${posted.size} answered`);
       return { ends: [isBroken ? 'none' : [...posted.values()].includes('error') ? 'failed' : 'good'], seen: [] };
@@ -1051,7 +1051,7 @@ const PARTS = {
         if (!waits && !begun) state ||= error ? 'silent' : 'ready';
       };
       globalThis.name = 'en';
-      playsFetch(async (address) => new Response(new ReadableStream({
+      replaceFetch(async (address) => new Response(new ReadableStream({
         async start(controller) {
           for (const gap of pieces.get(String(address).split('/').at(-1))) {
             await later(gap);
@@ -1061,14 +1061,14 @@ const PARTS = {
         },
       })));
       const page = freshPage({
-        moduleComes: () => later(module_ms),
+        loadModule: () => later(module_ms),
         loadPyodide: async () => {
           for (const response of await Promise.all(['./pyodide.asm.wasm', './python.zip'].map((name) => globalThis.fetch(name)))) await response.arrayBuffer();
           return { FS: { mkdirTree() {} }, unpackArchive() {}, runPython: () => () => '{}' };
         },
       });
       await page.load('worker.js');
-      await passes(lastPiece_ms + 4 * TIMEOUT_MS);
+      await wait(lastPiece_ms + 4 * TIMEOUT_MS);
       const wanted = module_ms < lastPiece_ms + TIMEOUT_MS ? 'ready' : 'silent';
       if (state !== wanted) throw new Error(`${state || 'nothing'} in place of ${wanted}: ${JSON.stringify([[...pieces], module_ms])}`);
       return { ends: [wanted], seen: [] };
@@ -1110,7 +1110,7 @@ const PARTS = {
       const options = { cancelSignal: cancelling.signal, onWait: () => tells('waits'), onProgress: () => tells('comes'), onFail: () => tells('fails') };
       let receivedText = '';
       watchedFetch('x', options, fetcher).then((response) => response.text()).then((all) => { receivedText = all; }, () => { receivedText = 'nothing'; });
-      await passes(300_000);
+      await wait(300_000);
       // What has to be told.
       const expected = [];
       let last_ms = 0, at_ms = answer_ms, end = outcome, hasWaited = false;
@@ -1141,7 +1141,7 @@ const PARTS = {
   // Messages while somebody types.
   async checking() {
     const page = freshPage();
-    await learns(page);
+    await loadTexts(page);
     const { pageState } = await page.load('page/page_state.js');
     const { Checker } = await page.load('writing/checking.js');
     let breaks = () => false;
@@ -1175,16 +1175,16 @@ const PARTS = {
           open += 1;
           checking.whenChecked().then(() => { open -= 1; });
         }
-        await passes(isGood ? 1000 : random.below(400));
+        await wait(isGood ? 1000 : random.below(400));
         ends.push(document.documentElement.dataset['state']);
         if (!isGood && random() < 0.1) {
           checking.markFailed();
-          await settles();
+          await settle();
           if (open) throw new Error('they wait for a compiler that cannot be had');
           checking.markRetry();
         }
       }
-      if (!isGood) await passes(1000); // a try that fails ends, too
+      if (!isGood) await wait(1000); // a try that fails ends, too
       if (open) throw new Error(`${open} wait for ever`);
       return { ends: [...new Set(ends)], seen: [notes, document.documentElement.dataset['image']] };
     };
@@ -1255,7 +1255,7 @@ const PARTS = {
   // as it was once they are left.
   async lessons() {
     const page = freshPage({ replaceOptions() {}, makePictureOption() {}, makeWorldPicture() {} });
-    await learns(page);
+    await loadTexts(page);
     const { pageState } = await page.load('page/page_state.js');
     const { Lessons } = await page.load('lesson/lessons.js');
     const LESSONS = ['tinibot', 'liner', 'tinibot'].map((robot, k) => ({ name: `lesson${k}`, title: 'L', block_title: 'L', robot, worlds: 2, world: {} }));
@@ -1322,7 +1322,7 @@ const PARTS = {
     const lessons = new Lessons({ python, simulatorPanel: driving, putProgram: (program) => (pageState.groupName.value ? opens(program) : given(program)), exchangeProgram: exchanges, work });
     page.byId('lessons').hidden = false;
     page.byId('side_lessons').click();
-    await passes(500);
+    await wait(500);
     const { text } = await page.load('page/texts.js'); // that a lesson was solved before is kept as its stars are
     const readVerdict = () => [page.byId('lesson_said').textContent.replace(` ${text('lesson_was_done')}`, ''), page.byId('lesson_said').dataset['verdict'], page.byId('lesson_stars').textContent, page.byId('lesson_end').hidden,
       page.byId('lesson_findings').children.length, page.byId('lesson_next').hidden, page.byId('lesson_end').textContent, page.byId('lesson_check').hidden];
@@ -1344,7 +1344,7 @@ const PARTS = {
       if (!isGroup && work.lesson && work.text && kept()[work.lesson] !== work.text) throw new Error(`of ${work.lesson} is kept ${kept()[work.lesson]}, and not ${work.text}`);
     };
     const rests = async () => {
-      await passes(3000);
+      await wait(3000);
       if (chosen && String(1 + LESSONS.indexOf(openLesson())) !== chosen) throw new Error(`${openLesson().name} is seen, and ${chosen} was chosen`);
     };
     const written = (random) => `F(${random.below(1000)}) ${random.of(['', '// tinibot', '// liner'])}`; // and where it is right
@@ -1381,7 +1381,7 @@ const PARTS = {
         takes.erases();
         takes[random.of(['opens', 'writes'])](random);
         takes.chooses(random);
-        await passes(random.below(500));
+        await wait(random.below(500));
         takes[random.of(['chooses', 'writes', 'robot', 'joins'])](random);
       },
       erases() { // whoever else uses this device
@@ -1406,26 +1406,26 @@ const PARTS = {
         verdict = random.of(['passed', 'failed', 'mistakes']);
         parts = random.below(4);
         end = random.of(isGood ? ['edit', 'end'] : ['check', 'check', 'end', 'edit']);
-        if (end === 'end') await passes(random.below(100));
+        if (end === 'end') await wait(random.below(100));
         if (isGood) actions.edit();
         actions[end]();
-        if (!isGood) await passes(random.below(400));
+        if (!isGood) await wait(random.below(400));
       }
       const seen = [readVerdict()];
       if (wrong) throw new Error(wrong);
       if (!isGood) return { ends: [end], seen };
       for (let k = 0; k < 20; k += 1) {
-        await passes(50);
+        await wait(50);
         seen.push(readVerdict());
       }
       actions.check();
-      await passes(3000);
+      await wait(3000);
       seen.push(readVerdict());
       delay = () => 5 + random.below(300);
       for (let k = 10 + random.below(40); k > 0; k -= 1) {
         await takes[random.of(['chooses', 'writes', ...Object.keys(takes)])](random);
         checkKept();
-        await (random() < 0.15 ? rests() : passes(random.below(random.of([50, 100, 1000]))));
+        await (random() < 0.15 ? rests() : wait(random.below(random.of([50, 100, 1000]))));
         checkKept();
       }
       await rests();
@@ -1454,13 +1454,13 @@ const PARTS = {
       for (let k = 0; k < 6; k += 1) {
         open += 1;
         asking.ask({ what: k }).then(({ ok }) => reports.push(ok), (error) => reports.push(error.reason)).finally(() => { open -= 1; });
-        await passes(random.below(100));
+        await wait(random.below(100));
         if (end === 'goes' && !isOver && random() < 0.4) {
           isOver = true;
           asking.end(new ConnectionFailure('gone'));
         }
       }
-      await passes(1000);
+      await wait(1000);
       if (open) throw new Error(`${open} never end: ${reports}`);
       return { ends: [end], seen: reports };
     };
@@ -1564,7 +1564,7 @@ const PARTS = {
           const worker = newest(), left_ms = worker.began_ms + limit_ms - now();
           if (isThere && !worker.hasSpoken && left_ms > 0 && left_ms <= ms) callback();
         }
-        await passes(ms);
+        await wait(ms);
       };
       for (let k = 6 + random.below(20); k > 0; k -= 1) {
         const act = random.of(['asks', 'asks', 'answers', 'waits', 'tries', 'tries', 'listens', random.of(isGood ? ['begins', 'readies'] : Object.keys(actions))]);
@@ -1583,12 +1583,12 @@ const PARTS = {
   // A file with a class's work is opened. Some works get lost, and the class takes no others: how many it has is said.
   async keeping() {
     const page = freshPage();
-    await learns(page);
+    await loadTexts(page);
     const { openWork } = await page.load('class/keeping.js');
     const { CLASS } = await page.load('page/words.js');
     let chanceNow = () => 1;
     let takenCount = 0;
-    playsFetch(async () => {
+    replaceFetch(async () => {
       await later(1);
       if (chanceNow() < 0.2) throw new Broken();
       if (chanceNow() < 0.2) return { ok: false, status: 413 };
@@ -1600,7 +1600,7 @@ const PARTS = {
       takenCount = 0;
       const pupils = Array.from({ length: random.below(6) }, (_, k) => ({ name: `P${k}`, text: 'F(1)', robot: '', lessons: [] }));
       const opened = openWork({ size: 9, text: async () => JSON.stringify({ tiniscript_class: CLASS.form, pupils }) });
-      await passes(50);
+      await wait(50);
       const openedCount = await opened;
       if (openedCount !== (takenCount || null)) throw new Error(`${openedCount} works are said to be open, and the class has ${takenCount}`);
       return { ends: [takenCount ? 'some' : 'none'], seen: [] };
@@ -1629,18 +1629,18 @@ const PARTS = {
     };
     URL.revokeObjectURL = (address) => open.delete(address);
     document.documentElement.dataset['class'] = '';
-    playsNavigator({});
-    playsFetch(async () => { throw new Broken(); });
-    await learns(page);
+    replaceNavigator({});
+    replaceFetch(async () => { throw new Broken(); });
+    await loadTexts(page);
     let room = async () => { throw new Broken(); };
-    playsFetch((_, { body }) => room(JSON.parse(body)));
+    replaceFetch((_, { body }) => room(JSON.parse(body)));
     const { pageState } = await page.load('page/page_state.js');
     const { text } = await page.load('page/texts.js');
     const { Teacher } = await page.load('class/teacher.js');
     const python = { ready: Promise.resolve(), ask: async (_, data) => { await later(10); return { text: new TextDecoder().decode(data) }; } };
     let played = 0;
     new Teacher({ python, openRun: async () => { played += 1; } });
-    await passes(10);
+    await wait(10);
     const [bar, wall] = page.byId('class').children;
     const [status, chips, giveBack, anew] = bar.children;
     const [large, giving, settings, code] = ['big_pupil', 'class_giving', 'class_window', 'big_code'].map((id) => document.body.children.find((item) => item.id === id));
@@ -1775,16 +1775,16 @@ const PARTS = {
         const act = random.of([...Object.keys(actions), 'comes', 'comes', 'comes', 'writes', 'writes', 'looks']);
         actions[act]();
         if (act === 'looks' && random() < 0.5) actions.ends();
-        await passes(random.of([20, 1050, random.below(1500)]));
+        await wait(random.of([20, 1050, random.below(1500)]));
         if (large.open && isClosed) throw new Error('what was closed is seen large again');
         if (codeSeen() < newest) throw new Error('the class of before is seen');
         newest = codeSeen();
       }
       if (!isGood) return { ends: [lost ? 'lost' : 'came'], seen: false };
       isLate = () => false;
-      await passes(16_000); // also what nobody answers is over
+      await wait(16_000); // also what nobody answers is over
       polls = 0;
-      await passes(10_000);
+      await wait(10_000);
       if (polls < 9 || polls > 10) throw new Error(`${polls} times in 10 s the class is asked`);
       const clock = (seconds) => `${Math.floor(seconds / 60)}:${String(seconds % 60).padStart(2, '0')}`;
       const members = [...groups].map(([key, group]) => [key, { ...group, all: [...present].filter(([, { number }]) => group.pupils.includes(number)) }]).filter(([, { all }]) => all.length);
@@ -1825,12 +1825,12 @@ const PARTS = {
       if (giving.open && !keptWorks.size) throw new Error('there is nothing to give');
       const tile = wall.children.find((item) => numberOf(item) && !within(item, 'play').hidden), before = played;
       tile?.children.find(({ className }) => className === 'play').click();
-      await passes(500);
+      await wait(500);
       if (tile && played === before) throw new Error('a run is not played');
       for (const item of [present, keptWorks, groups, robots]) item.clear();
       large.close();
       giving.close();
-      await passes(5000);
+      await wait(5000);
       if (wall.children.length || open.size) throw new Error(`${wall.children.length} tiles and ${open.size} pictures of nobody`);
       return { ends: ['good'], seen: [] };
     };
@@ -1871,9 +1871,9 @@ const PARTS = {
         leave() { this.end('left'); }
       },
     });
-    playsNavigator({});
-    playsFetch(async () => { throw new Broken(); });
-    await learns(page);
+    replaceNavigator({});
+    replaceFetch(async () => { throw new Broken(); });
+    await loadTexts(page);
     const { ConnectionFailure } = await page.load('robot/transport.js');
     const { pageState } = await page.load('page/page_state.js');
     const { RunningPlace } = await page.load('robot/place.js');
@@ -1882,7 +1882,7 @@ const PARTS = {
     pageState.checkResult.set({ ...PROGRAM, program: 'ff', bytes: 9 });
     const { text } = await page.load('page/texts.js');
     const panel = new RobotPanel({ python: { tryAgain() {} }, goTo() {}, recorder: noting(notes, 'recorder'), place: new RunningPlace(), pad: noting(notes, 'pad') });
-    await passes(10);
+    await wait(10);
     const EVENTS = [{ event: 'STARTED', program: 'ff', is_program: true }, { event: 'PLACE', program: 'ff', at: 0 }, { event: 'SHOW', value: '1' }, { event: 'DONE' }, { event: 'LOST' }, { event: 'STOPPED', cause: 'MESSAGE' }, { event: 'FAULT', fault: 'STUCK', program: 'ff', at: 0 }];
     const readMessage = () => page.byId('link_said').textContent;
     const observe = () => [readMessage(), page.byId('link_shown').textContent, page.byId('link_name').textContent, page.byId('link_rename_to').value, document.documentElement.dataset['robot'], structuredClone(pageState.robotRun.value)];
@@ -1895,7 +1895,7 @@ const PARTS = {
       failure = isGood || random() < 0.7 ? '' : 'link_silent';
       panel.connectByHost('p');
       const observations = [structuredClone(pageState.robotRun.value), document.documentElement.dataset['robot']];
-      await passes(isGood ? 50 : random.below(600));
+      await wait(isGood ? 50 : random.below(600));
       const isMet = () => document.documentElement.dataset['robot'] === 'connected';
       let stop = ''; // pressed, or done, since the newest start
       const actions = {
@@ -1937,7 +1937,7 @@ const PARTS = {
           if (!isMet()) return;
           page.byId('link_rename_to').value = 'Bo';
           page.byId('link_rename').click();
-          await passes(400);
+          await wait(400);
           if (isMet() && page.byId('link_name').textContent !== 'Bo') throw new Error('it has its name of before');
         },
       };
@@ -1945,7 +1945,7 @@ const PARTS = {
         if (isGood && before.length) before[0].end('unheard'); // once more, and late
         await actions[random.of(['tells', 'tells', 'tells', ...Object.keys(actions)])]();
         observations.push(observe());
-        await passes(random.below(300));
+        await wait(random.below(300));
       }
       const end = failure || (isGood ? 'stays' : random.of(['left', 'unheard']));
       const wasMet = isMet();
@@ -1953,7 +1953,7 @@ const PARTS = {
       notes.length = 0;
       if (end === 'left') ways[0].leave();
       if (end === 'unheard') ways[0].end('unheard');
-      if (!isGood) await passes(1000);
+      if (!isGood) await wait(1000);
       if (!isGood && wasMet && !noted('recorder', 'end', 'LOST')) throw new Error('the recording of who is gone goes on');
       if (!isGood && wasMet && isUnsaid && !readMessage().includes(text('say_not_confirmed'))) throw new Error(`nobody says that the stop is not confirmed: ${readMessage()}`);
       return { ends: [end], seen: [observations, [...notes]] };
@@ -1963,8 +1963,8 @@ const PARTS = {
   // Sensors of a real robot that are watched, and then another robot: what is seen is what it has told itself.
   async watching() {
     const page = freshPage({ Plot: class { clear() {} add() {} draw() {} } });
-    playsNavigator({});
-    await learns(page);
+    replaceNavigator({});
+    await loadTexts(page);
     const { pageState } = await page.load('page/page_state.js');
     const { SensorWatch } = await page.load('robot/watching.js');
     const { devicesOf } = await page.load('page/words.js');
@@ -2002,13 +2002,13 @@ const PARTS = {
       wasWanted = true;
       const observations = [observe()];
       for (let k = 1 + random.below(6); k > 0; k -= 1) {
-        await passes(random.below(400));
+        await wait(random.below(400));
         const sensors = devicesOf(robot, 'sensor').map(({ text }) => text), at = random.below(sensors.length);
         if (line.includes('SHOW')) {
           watch.onEvent({ event: 'SHOW', program: line, at, value: String(k) }, false);
           toldValues.set(sensors[at], String(k));
         }
-        await passes(50);
+        await wait(50);
         observations.push(observe());
         const shownCount = page.byId('senses').hidden ? 0 : page.byId('gauges').children.filter((row) => row.children[1].textContent).length;
         if (shownCount !== toldValues.size) throw new Error(`${shownCount} sensors are seen, and ${toldValues.size} were told`);
@@ -2016,7 +2016,7 @@ const PARTS = {
       const end = toldValues.size ? 'told' : 'silent';
       robot = null;
       watch.onRobotChange(null);
-      await passes(500);
+      await wait(500);
       return { ends: [end], seen: [observations, line] };
     };
   },
@@ -2026,9 +2026,9 @@ const PARTS = {
   async member() {
     const page = freshPage();
     document.documentElement.dataset['class'] = '';
-    playsNavigator({});
-    playsFetch(async () => { throw new Broken(); });
-    await learns(page);
+    replaceNavigator({});
+    replaceFetch(async () => { throw new Broken(); });
+    await loadTexts(page);
     const { EditorState } = await import(pathToFileURL(`${sources}/../node_modules/@codemirror/state/dist/index.js`).href);
     const { Membership } = await page.load('class/member.js');
     const { pageState } = await page.load('page/page_state.js');
@@ -2059,7 +2059,7 @@ const PARTS = {
     }, { onStateChange() {}, onBug() {}, onMatesChange: (all) => { others = all; } });
     let requests = []; // of the class, since the newest join or leave
     let isGone = () => false;
-    playsFetch(async (_, { body }) => {
+    replaceFetch(async (_, { body }) => {
       const request = JSON.parse(body);
       requests.push(request.do);
       await later(delay());
@@ -2085,23 +2085,23 @@ const PARTS = {
       for (let k = isGood ? 0 : 2 + random.below(8); k > 0; k -= 1) {
         end = random.of(['joins', ...Object.keys(actions)]);
         actions[end]();
-        await passes(random.below(900));
+        await wait(random.below(900));
       }
       [fails, isGone] = [() => false, () => false];
-      await passes(4000);
+      await wait(4000);
       if (member.isInGroup) member.leave();
-      await passes(isGood ? 0 : 50);
+      await wait(isGood ? 0 : 50);
       if (!isOutside()) throw new Error(`something is left of a group: ${JSON.stringify([member.isInGroup, pageState.groupName.value, document.documentElement.dataset['group'], others, isWitness, undo, group, loadText('tiniscript.group', 'sessionStorage')])}`);
-      await passes(1500);
+      await wait(1500);
       requests = [];
-      await passes(5000);
+      await wait(5000);
       if (requests.length) throw new Error(`outside of all groups it asks ${requests}`);
       member.join({ do: 'group_join', name: 'third' });
-      await passes(3000);
+      await wait(3000);
       const seen = [member.isInGroup, pageState.groupName.value, document.documentElement.dataset['group'], others.length, isWitness, group !== null, requests.length];
       if (!member.isInGroup || pageState.groupName.value !== 'third' || !others.length) throw new Error(`it is not in the group: ${seen}`);
       member.leave();
-      await passes(1500);
+      await wait(1500);
       if (!isOutside()) throw new Error('something is left of the last group');
       return { ends: [end], seen: isGood && seen };
     };
@@ -2112,9 +2112,9 @@ const PARTS = {
   // waits for news and one brings changes, at a time; who has left asks and hears nothing more.
   async together() {
     const page = freshPage();
-    playsNavigator({});
-    playsFetch(async () => { throw new Broken(); });
-    await learns(page);
+    replaceNavigator({});
+    replaceFetch(async () => { throw new Broken(); });
+    await loadTexts(page);
     const cm = (name) => import(pathToFileURL(`${sources}/../node_modules/@codemirror/${name}/dist/index.js`).href);
     const [{ EditorState, StateEffect, Transaction }, { EditorView }] = [await cm('state'), await cm('view')];
     const { SharedEditor } = await page.load('class/together.js');
@@ -2157,7 +2157,7 @@ const PARTS = {
       let delay = () => random.below(isGood ? 30 : 300), isLost = () => !isGood && random() < 0.2;
       let afterwards = 0; // asked once it has left
       let isOver = false, isCalm = false, isBroken = false, asked = 0, wrong = '';
-      playsFetch(async (_, { body }) => {
+      replaceFetch(async (_, { body }) => {
         const { changes, waits, at, writes, since, ran: [known, heard] } = JSON.parse(body);
         if (isOver) afterwards += 1;
         asked += 1;
@@ -2252,7 +2252,7 @@ const PARTS = {
       });
       let hasBegun = false;
       shared.showProgram({}, null).then(() => { hasBegun = true; });
-      await passes(random.below(60));
+      await wait(random.below(60));
       const ownActs = [], otherActs = [];
       const marks = () => { // lines that somebody else is in
         const found = [];
@@ -2262,9 +2262,9 @@ const PARTS = {
       const writes = (text, at) => view.dispatch({ changes: { from: at, insert: text }, selection: { anchor: at + text.length }, userEvent: 'input.type' });
       for (let k = random.below(4); k > 0; k -= 1) { // which the group's program replaces
         view.dispatch({ changes: { from: 0, insert: 'w' }, userEvent: random.of(['input.type', 'input.blocks']) });
-        await passes(random.below(60));
+        await wait(random.below(60));
       }
-      for (let k = 0; !hasBegun && k < 100; k += 1) await passes(50);
+      for (let k = 0; !hasBegun && k < 100; k += 1) await wait(50);
       const actions = {
         types() { // a line, sign by sign
           const name = `m${(count += 1)}`;
@@ -2284,7 +2284,7 @@ const PARTS = {
         async undoes() {
           isCalm = isGood;
           undo('undo');
-          await passes(2500);
+          await wait(2500);
           isCalm = false;
         },
         others() {
@@ -2304,22 +2304,22 @@ const PARTS = {
       };
       for (let k = 4 + random.below(14); k > 0; k -= 1) {
         await actions[random.of(['types', 'types', 'others', ...Object.keys(actions)])]();
-        await passes(random.of([0, random.below(100), random.below(1500)]));
+        await wait(random.of([0, random.below(100), random.below(1500)]));
         if (wrong) throw new Error(wrong);
       }
       if (random() < 0.3) { // the class is silent for a while
         isLost = () => true;
         [asked, heard.answers] = [0, true];
-        await passes(7000);
+        await wait(7000);
         if (asked > 50 || heard.answers) throw new Error(`a class that is silent is asked ${asked} times, and answers: ${heard.answers}`);
       }
       isLost = () => false;
       delay = () => 5;
       random.of([() => { shared.finishEdit(); }, () => view.looks(!view.hasFocus), () => view.dispatch({ selection: { anchor: 0 } })])();
       if (view.state.doc.lineAt(view.state.selection.main.head).number === view.state.doc.lines) view.looks(false);
-      await passes(9000);
+      await wait(9000);
       if (random() < 0.5) shared.chooseLine(place.line = 1, place.writes = true);
-      await passes(5000);
+      await wait(5000);
       if (wrong) throw new Error(wrong);
       const assertSame = (actual, expected, label) => { if (JSON.stringify(actual) !== JSON.stringify(expected)) throw new Error(`${label}: ${JSON.stringify(actual)} in place of ${JSON.stringify(expected)}`); };
       const lines = linesIn(view.state.doc.toString());
@@ -2338,13 +2338,13 @@ const PARTS = {
       isBroken = end === 'fails';
       if (isBroken) shared.finishEdit();
       isOver = end === 'left';
-      await passes(1500);
+      await wait(1500);
       assertSame([heard.left, heard.fails, undo, heard.places.length, marks().length], [Number(end === 'gone'), Number(end === 'fails'), null, 0, 0], 'once it is over');
       isOver = true;
       actions.others();
       view.dispatch({ changes: { from: 0, insert: 'x' }, userEvent: 'input.type' });
       actions.moves();
-      await passes(5000);
+      await wait(5000);
       if (afterwards) throw new Error(`${afterwards} times something is asked outside of the group`);
       assertSame(view.state.doc.toString(), `x${before}`, 'the text of who has left');
       return { ends: [end], seen: [] };
@@ -2379,15 +2379,15 @@ const PARTS = {
       for (let k = 2 + random.below(30); k > 0; k -= 1) {
         end = random.of(['asks', ...Object.keys(actions)]);
         actions[end]();
-        await passes(random.below(100));
+        await wait(random.below(100));
       }
-      await passes(200); // a class that has ended answers no more
+      await wait(200); // a class that has ended answers no more
       if (!isGood) return { ends: [end], seen: false };
       isLost = () => false;
       const hasHeard = () => JSON.stringify(heard.position) === JSON.stringify({ saw: version, ran: [key, runs.length] });
       for (let k = 0; k < 2 && !hasHeard(); k += 1) { // else its request is held
         actions.asks();
-        await passes(200);
+        await wait(200);
       }
       if (!hasHeard()) throw new Error(`it has heard ${JSON.stringify(heard.position)} of ${version}, ${runs.length}`);
       if (`${takenRuns}` !== `${runs}` || others !== version) throw new Error(`it takes ${takenRuns}, ${others} of ${runs}, ${version}`);
@@ -2431,9 +2431,9 @@ const PARTS = {
         leave() {}
       },
     });
-    playsNavigator({});
-    playsFetch(async () => { throw new Broken(); });
-    await learns(page);
+    replaceNavigator({});
+    replaceFetch(async () => { throw new Broken(); });
+    await loadTexts(page);
     const { pageState } = await page.load('page/page_state.js');
     const { RunningPlace } = await page.load('robot/place.js');
     const { RobotPanel } = await page.load('robot/panel.js');
@@ -2442,9 +2442,9 @@ const PARTS = {
     pageState.checkResult.set(whole);
     const python = { tryAgain() {}, ask: () => later(delay(), { ...whole, program: 'ee', image: 'ee' }) };
     const panel = new RobotPanel({ python, goTo() {}, recorder: noting([], 'recorder'), place: new RunningPlace(), pad: noting([], 'pad') });
-    await passes(10);
+    await wait(10);
     panel.connectByHost('p');
-    await passes(100);
+    await wait(100);
     const presses = {
       run: () => page.byId('link_upload').click(),
       start: () => page.byId('link_start').click(),
@@ -2475,20 +2475,20 @@ const PARTS = {
           wantedAction = end;
           presses[end]();
         } else others[end](random);
-        await passes(random() < 0.7 ? random.below(60) : random.below(900));
+        await wait(random() < 0.7 ? random.below(60) : random.below(900));
         if (wrong) throw new Error(`${wrong} after a STOP`);
       }
       stop(random);
-      await passes(1500);
+      await wait(1500);
       others.ends(random);
       const before = started;
       wantedAction = random.of(['run', 'start', 'line']);
       presses[wantedAction]();
-      await passes(1500);
+      await wait(1500);
       if (wrong) throw new Error(`${wrong} after a STOP`);
       if (started !== before + 1) throw new Error(`${wantedAction} starts ${started - before} times`);
       stop(random);
-      await passes(1500);
+      await wait(1500);
       return { ends: [end], seen: [] };
     };
   },
@@ -2592,9 +2592,9 @@ const PARTS = {
         leave() { this.end('left'); }
       },
     });
-    playsNavigator({});
-    playsFetch(async () => { throw new Broken(); });
-    await learns(page);
+    replaceNavigator({});
+    replaceFetch(async () => { throw new Broken(); });
+    await loadTexts(page);
     const { ConnectionFailure } = await page.load('robot/transport.js');
     const { pageState } = await page.load('page/page_state.js');
     const { text } = await page.load('page/texts.js');
@@ -2627,7 +2627,7 @@ const PARTS = {
     };
     const runs = new Runs();
     const panel = new RobotPanel({ python: { tryAgain() {}, ask: checks }, goTo() {}, recorder: new Recorder({ runs, play() {} }), place: new RunningPlace(), pad: noting([], 'pad') });
-    await passes(10);
+    await wait(10);
     page.byId('senses').hidden = page.byId('link_doing').hidden = true; // as in index.html
     const presses = (id) => page.byId(id).disabled || page.byId(id).hidden || page.byId(id).click();
     const actions = {
@@ -2658,16 +2658,16 @@ const PARTS = {
         if (robot.open.size) return;
         page.byId('link_line').value = 'F(1, 80)';
         page.byId('link_live').dispatchEvent(Object.assign(new Event('submit'), { preventDefault() {} }));
-        await passes(delay());
+        await wait(delay());
       },
       async twice(random) {
         if (robot.open.size) return;
         presses('link_watch');
-        await passes(random.below(20));
+        await wait(random.below(20));
         presses('link_watch');
       },
       async startAgain(random) { // after a line, which takes the breakpoints away; perhaps before it is sent
-        const answered = async () => { for (let k = 0; robot.open.size && k < 90; k += 1) await passes(100); };
+        const answered = async () => { for (let k = 0; robot.open.size && k < 90; k += 1) await wait(100); };
         await answered();
         if (isWatched()) actions.watch();
         await answered();
@@ -2693,7 +2693,7 @@ const PARTS = {
         actions.starts();
         robot.tell({ event: 'READING', rows: [[5, 'READ DISTANCE 5']] });
       },
-      waits: () => passes(2500),
+      waits: () => wait(2500),
     };
     const isWatched = () => page.byId('link_watch').attributes['aria-pressed'] === 'true';
     const gauges = () => page.byId('senses').hidden || page.byId('gauges').children.map((row) => row.children[1].textContent);
@@ -2707,33 +2707,33 @@ const PARTS = {
     const watchesAgain = async (byHand) => {
       const assertWatched = (isOn, when) => { if (isWatched() !== isOn) throw new Error(`${isOn ? 'nothing is' : 'something is still'} watched ${when}`); };
       robot.tell({ event: 'DONE' });
-      await passes(100);
+      await wait(100);
       if (!isWatched()) actions.watch();
-      await passes(1500);
+      await wait(1500);
       assertWatched(true, 'where somebody wants it');
       actions.identify();
-      await passes(1500);
+      await wait(1500);
       assertWatched(true, 'after something else was asked');
       actions.upload();
       actions.starts();
       assertWatched(false, 'beside a program');
-      await passes(1500);
+      await wait(1500);
       assertWatched(false, 'beside a program');
       robot.tell({ event: 'DONE' });
-      await passes(1500);
+      await wait(1500);
       assertWatched(true, 'after a program');
       robot.tell({ event: 'SHOW', at: 0, value: '4', program: robot.line });
-      await passes(50);
+      await wait(50);
       if (gauges()[0][0] !== '4') throw new Error(`the gauges say ${gauges()} and not what is watched`);
       if (byHand) actions.stop();
       robot.tell({ event: 'STOPPED', cause: byHand ? 'SEQUENCE' : 'BUTTON' });
-      await passes(3000);
+      await wait(3000);
       assertWatched(false, 'after a STOP');
       actions.upload();
       actions.starts();
-      await passes(100);
+      await wait(100);
       robot.tell({ event: 'DONE' });
-      await passes(3000);
+      await wait(3000);
       assertWatched(false, 'since a STOP');
     };
     return async (random, isGood) => {
@@ -2747,23 +2747,23 @@ const PARTS = {
       info = { has_breakpoints: random() < 0.8, has_readings: random() < 0.5, ...random.of([{ is_running: true, is_idle: false }, { is_running: false, is_idle: true }, { is_running: false, is_idle: false }]) };
       panel.connectByHost('p');
       const observations = [observe()];
-      await settles();
+      await settle();
       robot.points = robot.wanted = '';
       const ends = new Set();
-      await passes(isGood ? 50 : random.below(400));
+      await wait(isGood ? 50 : random.below(400));
       if (random() < 0.6) actions.upload();
       for (let k = 4 + random.below(12); k > 0; k -= 1) {
         const end = random.of(['starts', 'halts', 'shows', 'shows', ...Object.keys(actions)]);
         ends.add(end);
         await actions[end](random);
         observations.push([observe(), page.byId('link_shown').textContent]);
-        await passes(random.below(random.of([50, 400])));
+        await wait(random.below(random.of([50, 400])));
         const { halt } = document.documentElement.dataset;
         if (wrong) throw new Error(wrong);
         if (halt === 'read' && values()[0] !== String(robot.halts)) throw new Error(`its values are ${values()} at halt ${robot.halts}`);
         if (pageState.robotRun.value.isHeld && halt !== 'read' && halt !== 'halted') throw new Error('it is seen as halted, and goes on');
       }
-      await passes(8000);
+      await wait(8000);
       if (wrong) throw new Error(wrong);
       if (robot.watches && !isWatched()) throw new Error('its sensors are read, and nobody watches them');
       observations.push(observe());
@@ -2771,11 +2771,11 @@ const PARTS = {
       else { // it is gone before the answer
         robot.tell({ event: 'DONE' });
         if (!isWatched() && random() < 0.7) actions.watch();
-        await passes(6000);
+        await wait(6000);
         await actions[random.of(['watch', 'line', 'step', 'identify', 'identify', 'senses', 'senses'])](random);
       }
       robot.end(random.of(['left', 'unheard']));
-      await passes(isGood ? 50 : random.below(200));
+      await wait(isGood ? 50 : random.below(200));
       return { ends: [...ends], seen: observations };
     };
   },
@@ -2784,10 +2784,10 @@ const PARTS = {
   async stops() {
     const page = freshPage();
     let room = null;
-    playsNavigator({});
-    playsFetch((_, { body }) => room(JSON.parse(body)));
-    await learns(page);
-    playsFetch((_, { body }) => room(JSON.parse(body)));
+    replaceNavigator({});
+    replaceFetch((_, { body }) => room(JSON.parse(body)));
+    await loadTexts(page);
+    replaceFetch((_, { body }) => room(JSON.parse(body)));
     const { stopAll } = await page.load('robot/stops.js');
     const { text } = await page.load('page/texts.js');
     const place = page.byId('stops');
@@ -2808,21 +2808,21 @@ const PARTS = {
       stopAll();
       const seen = [];
       for (let k = isGood ? 60 : random.below(20); k > 0; k -= 1) {
-        await passes(100);
+        await wait(100);
         if (k < 55) seen.push(observe()); // the answer is there
         if (isAnswered && isGood && JSON.stringify(observe()).includes(text('stops_gone'))) throw new Error('it says that nobody has heard it, and all have');
       }
       if (!isGood && random() < 0.5) { // whatever gets lost, each that confirms is counted; where all is, that is said
-        await passes(12_000);
+        await wait(12_000);
         const hasNotice = JSON.stringify(observe()).includes(text('stops_gone'));
         if (isAnswered === hasNotice) throw new Error(`it is ${isAnswered ? 'heard' : 'lost'}, and it says ${observe()}`);
         if (!isAnswered && lossRate < 0.5) throw new Error('it is not asked again');
         if (!isAnswered) return { ends: ['unheard'], seen };
         const confirmedCount = robots.filter((item) => item.late_ms < 1e6).length;
         if (place.dataset['confirmed'] !== `${confirmedCount}`) throw new Error(`${confirmedCount} have confirmed, and it says ${place.dataset['confirmed']}`);
-        await passes(20_000); // a robot that has not confirmed may drive; that all stood says nothing of now
+        await wait(20_000); // a robot that has not confirmed may drive; that all stood says nothing of now
         if (place.hidden === confirmedCount < robots.length) throw new Error(`${confirmedCount} have confirmed, and later it is ${place.hidden ? 'hidden' : `said: ${observe()}`}`);
-      } else if (!isGood) await passes(random.below(14_000)); // what it says of this stop hides nothing of the next one
+      } else if (!isGood) await wait(random.below(14_000)); // what it says of this stop hides nothing of the next one
       return { ends: [isGood ? 'over' : robots.some((item) => item.late_ms > 1e6) ? 'silent' : 'confirmed'], seen };
     };
   },
@@ -2833,7 +2833,7 @@ const PARTS = {
     const MOST_EARLIER = 5;
     return async (random) => {
       const page = freshPage();
-      await learns(page);
+      await loadTexts(page);
       const { OwnWorlds } = await page.load('world/own.js');
       const { loadWorldTexts } = await page.load('programs/work.js');
       const unreadable = new Set();
@@ -2885,7 +2885,7 @@ const PARTS = {
           }).catch((error) => { wrong = String(error); });
         },
         async reloads() {
-          await passes(3000);
+          await wait(3000);
           hasRoomFor(true);
           for (const world of keptWorlds) if (world && random() < 0.15) unreadable.add(world.id);
           isReady = random() < 0.5;
@@ -2894,16 +2894,16 @@ const PARTS = {
           const [before, ...earlier] = keptWorlds, hadText = before && textOf(before);
           let isWhole = null;
           own.restore().then((found) => { isWhole = found; });
-          await passes(3000);
+          await wait(3000);
           assertSame(isWhole, !hadText || isThere([before]), 'whether it is whole');
           worlds = [isThere([before]) ? before : null, ...earlier.filter((world) => isThere([world]))];
         },
         async rests() { // then nobody has to write them once more
           actions.keeps();
-          await passes(3000);
+          await wait(3000);
           asks = 0;
           actions.keeps();
-          await passes(3000);
+          await wait(3000);
           assertSame(asks, 0, 'how often they are written');
         },
         waits: () => {},
@@ -2914,11 +2914,11 @@ const PARTS = {
         delay = () => 5 + random.below(random.of([5, 600]));
         ends.add(act);
         await actions[act]();
-        await passes(random.of([0, 100, 2000]));
+        await wait(random.of([0, 100, 2000]));
         assertSame(readWorlds(), rowOf(worlds), `after it ${act}`);
         if (wrong) throw new Error(wrong);
       }
-      await passes(3000);
+      await wait(3000);
       const [newestText, ...texts] = keptWorlds.map((world) => (world && textOf(world) ? `${world.name && `# ${world.name}\n`}${textOf(world)}` : ''));
       assertSame(loadWorldTexts(), { newest: newestText, before: texts.filter(Boolean) }, 'what is kept');
       return { ends: [...ends], seen: [] };
@@ -2928,7 +2928,7 @@ const PARTS = {
   // What is drawn in one world after another is undone and done again in that world alone, change by change.
   async drawing() {
     const page = freshPage();
-    await learns(page);
+    await loadTexts(page);
     const { WorldDrawing } = await page.load('world/drawing.js');
     const empty = (name) => ({
       name, labels: { en: name }, width_cm: 200, height_cm: 100, has_border: true, ambient_percent: 50, seconds: 0,
@@ -2966,8 +2966,8 @@ const PARTS = {
         drawing.reset();
       },
       async opens() {
-        choosesFile(page.byId('world_file'), new File(['w'], 'w.toml'));
-        await passes(50);
+        chooseFile(page.byId('world_file'), new File(['w'], 'w.toml'));
+        await wait(50);
       },
     };
     const drawn = () => JSON.stringify({ ...world, name: '', labels: {} });
@@ -2979,7 +2979,7 @@ const PARTS = {
         end = random.of(['adds', 'adds', 'moves', 'undoes', 'undoes', 'redoes', ...Object.keys(actions)]);
         const before = drawn();
         await actions[end](random);
-        await passes(random.below(50));
+        await wait(random.below(50));
         if (end === 'enters' || end === 'opens') past = future = [];
         else if (end === 'undoes' || end === 'redoes') {
           const [from, to] = end === 'undoes' ? [past, future] : [future, past];
@@ -2998,8 +2998,8 @@ const PARTS = {
   // one hears of it. One that was deleted may come back.
   async programs() {
     const page = freshPage({ generate: () => ({ toCanvas() {} }), correction: {} });
-    playsNavigator({});
-    await learns(page);
+    replaceNavigator({});
+    await loadTexts(page);
     const { pageState } = await page.load('page/page_state.js');
     const { Programs } = await page.load('programs/programs.js');
     const { loadWork } = await page.load('programs/work.js');
@@ -3074,12 +3074,12 @@ const PARTS = {
           for (const item of [random.of(['link', 'line']), form]) {
             page.byId(`share_${item}`).click();
             if (page.byId('programs').dataset.shared !== 'asked' || !page.byId('shared').hidden) throw new Error('what was asked before is there still');
-            if (random() < 0.3) await passes(random.below(100));
+            if (random() < 0.3) await wait(random.below(100));
           }
           const address = store.getItem('tiniscript.public') ?? location.href;
           const expected = form === 'line' ? lineOf(work.text) : address === 'nowhere' ? '' : await makeLink(work, address) ?? '';
-          while (page.byId('programs').dataset.shared === 'asked') await passes(1); // what is packed waits for the real clock
-          await passes(500);
+          while (page.byId('programs').dataset.shared === 'asked') await wait(1); // what is packed waits for the real clock
+          await wait(500);
           const shared = page.byId('shared');
           if (shared.value !== expected || shared.hidden !== !expected || page.byId('programs').dataset.shared !== (expected ? 'done' : 'wrong')) throw new Error(`${shared.value} is shared in place of ${expected}`);
           const isLine = page.byId('share_line').attributes['aria-pressed'] === 'true', refusal = page.byId('shared_told').textContent;
@@ -3088,7 +3088,7 @@ const PARTS = {
         async asks() { // and what comes of it nobody waits for
           if (!page.byId('programs').open) return;
           page.byId('share_line').click();
-          await passes(random.below(100));
+          await wait(random.below(100));
         },
         lesson: () => programs.replaceProgram({ text: `S; // ${(count += 1)}`, robot: random.of(['tinibot', 'liner']), name: '' }),
         older: () => {
@@ -3109,7 +3109,7 @@ const PARTS = {
           const link = await makeLink({ text: `B(${(count += 1)});`, robot: 'tinibot' }, location.href);
           location.hash = link.slice(link.indexOf('#'));
           dispatchEvent(new Event('hashchange'));
-          for (let k = 0; work.text !== `B(${count});` && k < 50_000; k += 1) await settles(); // it waits for the real clock
+          for (let k = 0; work.text !== `B(${count});` && k < 50_000; k += 1) await settle(); // it waits for the real clock
           if (work.text !== `B(${count});`) throw new Error('the program of a link is not seen');
         },
       };
@@ -3201,7 +3201,7 @@ const PARTS = {
   // The steps of the lesson that is chosen, after others that came late or not at all.
   async steps() {
     const page = freshPage({ replaceOptions() {}, makePictureOption() {}, makeWorldPicture() {} });
-    await learns(page);
+    await loadTexts(page);
     const { pageState } = await page.load('page/page_state.js');
     const { Lessons } = await page.load('lesson/lessons.js');
     const LESSONS = [1, 2, 3].map((k) => ({ name: `lesson${k}`, title: `L${k}`, block_title: `L${k}`, robot: 'tinibot', worlds: 1, world: {} }));
@@ -3251,7 +3251,7 @@ const PARTS = {
     const solves = async () => {
       while (!choice.disabled && page.byId('lesson_check').hidden) goesOn();
       if (!choice.disabled) page.byId('lesson_check').click();
-      await passes(700);
+      await wait(700);
       goesOn();
     };
     const chooses = (number) => {
@@ -3269,19 +3269,19 @@ const PARTS = {
         const choosesAny = () => chooses(1 + random.below(3));
         await random.of([opens, goesOn, solves, choosesAny, choosesAny])();
         for (let k = random.below(4); k > 0; k -= 1) {
-          await passes(random.below(150));
+          await wait(random.below(150));
           const [name, hint] = [page.byId('lesson_name').textContent, page.byId('lesson_hint_said').children[0]?.children ?? ['']];
           if (pendingLooks < 0) throw new Error('the world begins again');
           if (name && hint.join() !== name.replace('L', 'of ')) throw new Error(`beneath ${name} is a step ${hint}`);
         }
       }
       if (choice.disabled) end = 'failed';
-      if (!isGood && random() < 0.5) await passes(500);
-      await passes(isGood ? 1000 : 0);
+      if (!isGood && random() < 0.5) await wait(500);
+      await wait(isGood ? 1000 : 0);
       if (isGood && newest.name !== '' && newest.name !== page.byId('lesson_name').textContent) throw new Error(`${newest.name} is not seen`);
       if (isGood && `L${choice.value}` !== page.byId('lesson_name').textContent) throw new Error(`${choice.value} is chosen, and another one is seen`);
       if (isGood) chooses(1 + random.below(3));
-      await passes(isGood ? 500 : 0);
+      await wait(isGood ? 500 : 0);
       const hint = page.byId('lesson_hint_said').children[0]?.children;
       return { ends: [end], seen: isGood && [page.byId('lesson_name').textContent, hint, page.byId('lesson_steps').children.length, pageState.taughtBlocks.value, choice.value, choice.disabled, page.byId('lesson_said').textContent, world] };
     };
@@ -3291,7 +3291,7 @@ const PARTS = {
   // places; who goes on is halted; at rest the robot knows the breakpoints, and nothing of a halt before is seen.
   async places() {
     const page = freshPage();
-    await learns(page);
+    await loadTexts(page);
     const { Debugging } = await page.load('robot/debugging.js');
     const { pageState } = await page.load('page/page_state.js');
     const { LINK } = await page.load('page/words.js');
@@ -3420,7 +3420,7 @@ const PARTS = {
         const act = random.of([...!info || !program ? ['meets', 'uploads'] : isRunning ? ['halts', 'goesOn', 'halts', 'ends'] : ['uploads', 'breaks', 'startAgain', 'stop'], ...Object.keys(actions)]);
         actions[act](random);
         acted.add(act);
-        await passes(random.of([0, 20, 500]));
+        await wait(random.of([0, 20, 500]));
         if (wrong) throw new Error(`after ${[...acted]}: ${wrong}`);
         const isShown = dataset['halt'];
         if ((isShown === 'halted' || isShown === 'read') !== isHalted) throw new Error(`after it ${act} ${isShown} is seen`);
@@ -3433,7 +3433,7 @@ const PARTS = {
   // The recording of a run, before and after runs of others: each row at its time, which stands while the program is halted.
   async recording() {
     const page = freshPage();
-    await learns(page);
+    await loadTexts(page);
     const { Recorder } = await page.load('robot/recorder.js');
     const { Runs } = await page.load('virtual/runs.js');
     const { pageState } = await page.load('page/page_state.js');
@@ -3548,7 +3548,7 @@ const PARTS = {
         goesOn();
         recorder.resume();
       },
-      lasts: (random) => passes(random.of([1000, 700_000])),
+      lasts: (random) => wait(random.of([1000, 700_000])),
     };
     return async (random) => {
       const acted = new Set();
@@ -3564,7 +3564,7 @@ const PARTS = {
           reportRows(Array.from({ length: MOST_EVENTS + random.of([0, 9]) }, () => [elapsed(), 'READ DISTANCE 5']));
         } else await actions[end](random);
         acted.add(end);
-        await passes(random.below(300));
+        await wait(random.below(300));
         assertSame(page.byId('record_play').hidden, !ownEvents.length, 'nothing can be played');
         assertSame(trims, endedCount, 'those that have ended');
         if (!ran) continue;
@@ -3586,7 +3586,7 @@ const PARTS = {
   // Whose work is given back to whom, while pupils come and go.
   async giving() {
     const page = freshPage();
-    await learns(page);
+    await loadTexts(page);
     const { GivingWindow } = await page.load('class/giving.js');
     const handouts = [];
     const giving = new GivingWindow((key, pupil) => handouts.push([key, pupil]));
@@ -3631,16 +3631,16 @@ const PARTS = {
   async sure() {
     const page = freshPage({ generate: () => ({ toCanvas() {} }), correction: {} });
     document.documentElement.dataset['class'] = '';
-    playsNavigator({});
-    playsFetch(async () => { throw new Broken(); });
-    await learns(page);
+    replaceNavigator({});
+    replaceFetch(async () => { throw new Broken(); });
+    await loadTexts(page);
     let requests = [];
     let over = '';
     let isTold = false;
     const afterwards = []; // asked of a class that is known to be over
     let delay = () => 5;
     let loses = () => false;
-    playsFetch(async (_, { body }) => {
+    replaceFetch(async (_, { body }) => {
       const request = JSON.parse(body);
       if (isTold) afterwards.push(request.do);
       requests.push(request.do);
@@ -3653,7 +3653,7 @@ const PARTS = {
     });
     const { Teacher } = await page.load('class/teacher.js');
     new Teacher({ python: { get ready() { return Promise.reject(new Broken()); }, ask() {} }, openRun: async () => {} });
-    await passes(100);
+    await wait(100);
     const within = (part) => (part ? [part, ...(part.children ?? []).flatMap(within)] : []);
     const parts = [page.byId('class'), ...document.body.children].flatMap(within);
     const [anew, more, end] = ['class_anew', 'class_anew', 'class_end'].map((key, k) => parts.filter((item) => item.type === 'button' && item.dataset['text'] === key)[k % 2]);
@@ -3677,18 +3677,18 @@ const PARTS = {
       for (let k = isGood ? 0 : 2 + random.below(8); k > 0; k -= 1) {
         const did = presses(random.of([anew, more]), 'class_anew', random() < 0.2 ? 2 : 1);
         ends.add(did ? 'sure' : 'once');
-        await passes(random.of([1, 300, 3000, 4990, 5010, 8000]) + random.below(5));
+        await wait(random.of([1, 300, 3000, 4990, 5010, 8000]) + random.below(5));
       }
       if (!isGood) return { ends: [...ends], seen: false };
       loses = (requestName) => over !== '' && requestName !== 'class_over' && random() < 0.5; // `tsc studio` has ended
       delay = () => random.below(1500); // older answers come when it is known, if they come
-      await passes(900 + random.below(400));
-      while (!presses(end, 'class_over')) await passes(100);
-      await passes(3000); // what was asked before is answered
+      await wait(900 + random.below(400));
+      while (!presses(end, 'class_over')) await wait(100);
+      await wait(3000); // what was asked before is answered
       afterwards.length = 0;
       const seen = () => [document.documentElement.dataset['teacher'], page.byId('class').children[0]?.textContent];
       const before = seen();
-      await passes(20_000);
+      await wait(20_000);
       if (`${seen()}` !== `${before}` || afterwards.length || before[0] !== 'class_over') throw new Error(`after the end: ${seen()}, ${afterwards}`);
       return { ends: ['over'], seen: before };
     };
@@ -3698,7 +3698,7 @@ const PARTS = {
   async cable() {
     const page = freshPage();
     let isHeld = false;
-    playsNavigator({ locks: { request(_, __, callback) {
+    replaceNavigator({ locks: { request(_, __, callback) {
       const own = callback(isHeld ? null : {});
       if (own) {
         isHeld = true;
@@ -3765,15 +3765,15 @@ const PARTS = {
         const own = { robot: null };
         const robot = own.robot = new DirectRobot(python, port(own), { onEvent() {}, onEnd: ({ reason }) => notes.push(reason) }, NO_KEYS);
         const meetOutcome = robot.connect('tinibot', 'en').then(() => 'met', ({ reason }) => reason);
-        await passes(isGood ? 1000 : random.below(random.of([20, 300, 1200])));
+        await wait(isGood ? 1000 : random.below(random.of([20, 300, 1200])));
         if (!isGood && random() < 0.3 && state === 'open') goes();
         const wasOpening = state === 'opening';
         if (isGood) notes.push(isHeld, state);
         else ends.push(robot.isOver ? 'over' : state);
         robot.leave();
-        await settles();
+        await settle();
         if (!isGood && !wasOpening && !hasHung && random() < 0.5) continue; // to the next one at once
-        await passes(hasHung ? 12_000 : 1000);
+        await wait(hasHung ? 12_000 : 1000);
         hasHung = false;
         notes.push(await meetOutcome);
         if (wasLeft) throw new Error('it is opened though it was left');
@@ -3787,7 +3787,7 @@ const PARTS = {
   // ends once, in its order, and the session gets each byte once.
   async queue() {
     const page = freshPage();
-    playsNavigator({});
+    replaceNavigator({});
     const { DirectRobot } = await page.load('robot/direct.js');
     let delay = () => 5;
     let breaks = () => false;
@@ -3812,7 +3812,7 @@ const PARTS = {
       const port = { isRadio: true, lossReason: 'port_gone', async open(onData) { hears = onData; }, async write() {}, async close() {} };
       const robot = new DirectRobot(python, port, { onEvent() {}, onEnd() {} }, NO_KEYS);
       robot.connect('tinibot', 'en').catch(() => {});
-      await passes(1000);
+      await wait(1000);
       const came = [];
       const endedNumbers = [];
       let asks = 0;
@@ -3844,20 +3844,20 @@ const PARTS = {
       for (let k = 3 + random.below(20); k > 0; k -= 1) {
         end = random.of(['asks', ...Object.keys(actions)]);
         actions[end]();
-        await passes(random.below(random.of([3, 300])));
+        await wait(random.below(random.of([3, 300])));
         const old = sentRequests.find(({ number }) => number <= stopped);
         if (old) throw new Error(`${old.number} of ${stopped} is done after a STOP`);
         if (new Set(sentRequests).size < sentRequests.length) throw new Error('something is done twice');
         if (wrong) throw new Error(wrong);
       }
-      await passes(3000);
+      await wait(3000);
       if ([...endedNumbers].sort((one, other) => one - other).join() !== Array.from({ length: asks }, (_, k) => k + 1).join()) throw new Error(`${asks} were asked, and ${endedNumbers} have ended`);
       const heardNumbers = sentRequests.filter((item) => item.do === 'keys').map(({ number }) => number);
       if (!robot.isOver && held > stopped && heardNumbers.at(-1) !== held) throw new Error(`${held} is held, and the robot hears ${heardNumbers}`);
       if (!robot.isOver && `${bytes}` !== `${came}`) throw new Error(`${bytes} of ${came}`);
       if (robot.isOver) end = 'broken';
       robot.leave();
-      await passes(100);
+      await wait(100);
       return { ends: [end], seen: isGood && endedNumbers };
     };
   },
@@ -3925,7 +3925,7 @@ const PARTS = {
       const settlesWell = async (promise) => {
         let isDone = null;
         promise.then(() => { isDone = true; }, () => { isDone = false; });
-        await passes(50);
+        await wait(50);
         return isDone;
       };
       for (let k = 3 + random.below(8); k > 0; k -= 1) {
@@ -3952,14 +3952,14 @@ const PARTS = {
         loses = () => false;
         let otherAnswer = '';
         open('fetch', { request: { name: 'other', method: 'GET', cache: 'reload' } }).then((found) => { otherAnswer = found; });
-        await passes(20);
+        await wait(20);
         if (otherAnswer !== `other of ${served}`) throw new Error(`with a network it gives ${otherAnswer}`);
         loses = () => true;
         if (await open('fetch', { request: { name: './robots', method: 'POST' } })) throw new Error('it answers for the server');
         for (const name of ['./?', ...FILES, ...[...languages].flatMap((language) => LANGUAGES[language])]) {
           let answer = '';
           open('fetch', { request: { name, method: 'GET' } }).then((found) => { answer = found; }, () => {});
-          await passes(20);
+          await wait(20);
           if (answer.startsWith('a stranger')) throw new Error(`${name} is what a stranger has left`);
           if (!(name === './?' ? [`./ of ${version}`] : FILES.includes(name) ? [`${name} of ${version}`] : Array.from({ length: served }, (_, n) => `${name} of ${n + 1}`)).includes(answer)) throw new Error(`without a network ${name} of ${version} is ${answer}`);
         }
@@ -4000,13 +4000,13 @@ const PARTS = {
   // One language after another is chosen, over a connection that may fail: the last one is seen, or what was seen before it.
   async languages() {
     const page = freshPage();
-    playsNavigator({});
-    await learns(page);
+    replaceNavigator({});
+    await loadTexts(page);
     const { setLanguage, text } = await page.load('page/texts.js');
     const { pageState } = await page.load('page/page_state.js');
     let delay = () => 5;
     let fails = () => false;
-    playsFetch(async (where) => {
+    replaceFetch(async (where) => {
       await later(delay());
       if (fails()) throw new Broken();
       return { ok: true, json: async () => ({ stop: where }) };
@@ -4020,9 +4020,9 @@ const PARTS = {
         chosen = random.of(['en', 'es', 'pt']);
         const own = setLanguage(chosen);
         own.then((language) => kept.push(language));
-        await passes(random.below(random.of([50, 1200])));
+        await wait(random.below(random.of([50, 1200])));
       }
-      await passes(1000);
+      await wait(1000);
       const seen = pageState.language.value;
       if (text('stop').startsWith('./') && text('stop') !== `./texts.${seen}.json`) throw new Error(`it says ${text('stop')} in ${seen}`);
       if (kept.at(-1) !== seen) throw new Error(`${kept.at(-1)} is chosen, and ${seen} seen`);
@@ -4138,7 +4138,7 @@ const PARTS = {
       toggleBreakpoint: () => { if (textOf(formOf(editor.text)) !== blocks.shown) fails('a breakpoint is set in another text'); },
       showRunning() {}, goTo() {},
     };
-    await learns(page);
+    await loadTexts(page);
     const { pageState } = await page.load('page/page_state.js');
     const { Views } = await page.load('writing/views.js');
     let delay = () => 5;
@@ -4189,7 +4189,7 @@ const PARTS = {
     const pane = page.byId('blocks');
     views.markReady();
     views.wake();
-    for (let k = 0; !blocks && k < 500; k += 1) await settles();
+    for (let k = 0; !blocks && k < 500; k += 1) await settle();
     const presses = (id) => page.byId(id).click();
     let count = 0;
     let ownLines = []; // that have to stay in a group
@@ -4211,7 +4211,7 @@ const PARTS = {
         for (let more = true; more; more = random() < 0.3) { // and takes the next one at once
           blocks.isDragging = true;
           if (!group && random() < 0.2) presses('undo');
-          await passes(random.below(random.of([2, 120])));
+          await wait(random.below(random.of([2, 120])));
           blocks.isDragging = false;
           const isNew = random() < 0.7, line = isNew ? `b${(count += 1)}` : blocks.form.body.pop()?.text;
           hasFailed = false;
@@ -4258,7 +4258,7 @@ const PARTS = {
         const { view } = work;
         let picture;
         views.makePicture().then((made) => { picture = made; }, fails);
-        for (let k = 0; picture === undefined && k < 100; k += 1) await passes(100);
+        for (let k = 0; picture === undefined && k < 100; k += 1) await wait(100);
         if (picture === undefined) fails('a picture never comes');
         if (work.view !== view) fails(`a picture leaves ${view}`);
         if (picture === null && !hasFailed) fails('there is no picture');
@@ -4278,7 +4278,7 @@ const PARTS = {
     };
     const rests = async () => {
       actions.checks();
-      await passes(4000);
+      await wait(4000);
       if (wrong) throw new Error(wrong);
       const text = textOf(formOf(editor.text));
       if (work.view !== 'blocks' || (editor.hasFocus && text.includes('?'))) return;
@@ -4333,7 +4333,7 @@ const PARTS = {
         await actions[act](random);
         ends.add(act);
         if (!isGood && random() < 0.15) await rests();
-        await passes(random.of([0, random.below(40), random.below(600)]));
+        await wait(random.of([0, random.below(40), random.below(600)]));
         if (wrong) throw new Error(wrong);
         all.push([editor.text, textOf(blocks.form), pane.dataset['state']]);
       }
@@ -4351,8 +4351,8 @@ const PARTS = {
     globalThis.innerWidth = 1366;
     const { blockly, seen } = blocklyInNode();
     const page = freshPage({ blockly });
-    playsNavigator({});
-    await learns(page);
+    replaceNavigator({});
+    await loadTexts(page);
     const { pageState } = await page.load('page/page_state.js');
     pageState.robotName.set('tinibot');
     globalThis.CSSStyleSheet = class { replaceSync() {} };
@@ -4380,7 +4380,7 @@ const PARTS = {
     });
     const workspace = () => seen.workspaces.at(-1);
     const firstHearers = hearers;
-    await passes(100);
+    await wait(100);
     const all = () => workspace().getAllBlocks(true).filter((block) => !block.isShadow());
     return async (random, isGood) => {
       const number = () => [['NUMBER', String(1 + random.below(9))]];
@@ -4556,7 +4556,7 @@ const PARTS = {
           if (!def) return;
           const before = changes;
           random.of([() => def.addValue(), () => def.removeValue(), () => def.names().length && def.setFieldValue(`Z${random.below(99)}`, 'P0')])();
-          await passes(100);
+          await wait(100);
           const calls = workspace().getBlocksByType('call');
           for (const call of calls) {
             const labels = def.names().map((_, k) => call.getFieldValue(`L${k}`));
@@ -4567,7 +4567,7 @@ const PARTS = {
         async runs() {
           shownState.running = [];
           says.running();
-          await passes(3000);
+          await wait(3000);
           if (random() < 0.5) actions.scrolls();
           let before = viewOf(), isLeft = false;
           for (let k = random.below(6); k > 0; k -= 1) {
@@ -4583,21 +4583,21 @@ const PARTS = {
               actions.scrolls();
               [before, isLeft] = [viewOf(), true];
             }
-            await passes(random.below(1500));
+            await wait(random.below(1500));
             isSeen();
             if (random() < 0.5) continue;
             blocks.showRunning([]); // for a moment
-            await passes(random.below(500));
+            await wait(random.below(500));
           }
           shownState.running = [];
           says.running();
-          await passes(3000);
+          await wait(3000);
           if (`${viewOf()}` !== `${before}`) throw new Error(`after a run the view is ${viewOf()}, and was ${before}`);
         },
         async grows() { // the robot, and is small again
           shownState.running = [];
           says.running();
-          await passes(3000);
+          await wait(3000);
           actions.scrolls();
           const before = viewOf(), { room } = workspace();
           const seenNow = (slack) => workspace().getTopBlocks(false).filter((top) => viewRect(slack).contains(...(({ left, top: y }) => [left, y])(top.getBoundingRectangle()))).length;
@@ -4617,7 +4617,7 @@ const PARTS = {
           const tells = async (findings) => {
             shownState.findings = findings;
             says.findings();
-            await passes(10);
+            await wait(10);
           };
           shownState.fault = null;
           says.fault();
@@ -4641,7 +4641,7 @@ const PARTS = {
           const before = changes;
           const move = random.of(moves);
           move.setFieldValue(move.getFieldValue('WORD') === 'L' ? 'R' : 'L', 'WORD');
-          await passes(100);
+          await wait(100);
           if (changes === before) throw new Error('nobody hears of a change of the blocks');
           takes();
         },
@@ -4654,11 +4654,11 @@ const PARTS = {
         },
         async ends() {
           tried?.();
-          await settles();
+          await settle();
           isAlone = '';
         },
         goes: () => blocks.goTo({ line: line(), column: 1 }),
-        waits: () => passes(1500),
+        waits: () => wait(1500),
       };
       const viewOf = () => [workspace().scale, workspace().scrollX, workspace().scrollY].map((item) => Math.round(100 * item) / 100);
       const viewRect = (slack) => (({ left, top, width, height }) => new blockly.utils.Rect(top - slack, top + height + slack, left - slack, left + width + slack))(workspace().getMetricsManager().getViewMetrics(true));
@@ -4711,13 +4711,13 @@ const PARTS = {
       const ends = new Set();
       if (isGood) {
         tried?.();
-        await passes(3000);
+        await wait(3000);
         blocks.beginProgram();
         actions.level();
         actions.robot();
         actions.shows();
         for (const name of ['running', 'fault', 'points', 'findings', 'mates']) actions[name]();
-        await passes(3000);
+        await wait(3000);
       } else actions.shows();
       const noted = [];
       for (let k = 4 + random.below(10); k > 0; k -= 1) {
@@ -4725,14 +4725,14 @@ const PARTS = {
         ends.add(act);
         const before = changes;
         await actions[act]();
-        await passes(random.of([0, random.below(900)]));
+        await wait(random.of([0, random.below(900)]));
         if (!['edits', 'names', 'puts'].includes(act) && changes !== before) throw new Error(`${act} is told as a change`);
         checks(act);
         noted.push([act, workspace().scale, workspace().scrollX, workspace().scrollY, JSON.parse(blocks.layoutText).length, structuredClone(workspace().list)]);
       }
       shownState.running = [];
       says.running();
-      await passes(3000);
+      await wait(3000);
       return { ends: [...ends], seen: isGood && noted };
     };
   },
@@ -4741,7 +4741,7 @@ const PARTS = {
   // back that a run has taken, and no sooner; the browser fills its screen as long as the page does.
   async stage() {
     const page = freshPage();
-    await learns(page);
+    await loadTexts(page);
     const { pageState } = await page.load('page/page_state.js');
     const { Stage } = await page.load('virtual/stage.js');
     const root = document.documentElement;
@@ -4776,7 +4776,7 @@ const PARTS = {
           isOver = random() < 0.5;
           moves();
           stage.onRunEnd();
-          await passes(250);
+          await wait(250);
           if (isOver || pageState.sideId.value === 'side_lessons') viewState.big = false; // its text is read again
           isOver = false;
         },
@@ -4785,10 +4785,10 @@ const PARTS = {
           for (const ms of [10, 150, 150]) {
             moves();
             writing.dispatchEvent(new Event('pointermove'));
-            await passes(ms);
+            await wait(ms);
             if (('big' in root.dataset) !== viewState.big) throw new Error('the room changes under a mouse that moves');
           }
-          await passes(100);
+          await wait(100);
           shrinks();
           isOver = false;
         },
@@ -4798,7 +4798,7 @@ const PARTS = {
         async lets() {
           dispatchEvent(new Event(random.of(['pointerup', 'pointercancel'])));
           if (viewState.held && root.dataset['big'] !== undefined && !viewState.big) throw new Error('it is small before a press is over');
-          await passes(1);
+          await wait(1);
           if (viewState.held) shrinks();
           viewState.held = false;
         },
@@ -4823,10 +4823,10 @@ const PARTS = {
         letter: () => key('f', true),
         escape() { key('Escape'); viewState.full = false; },
         async leaves() { // the browser's Escape, of which the page hears nothing else
-          await passes(100);
+          await wait(100);
           const before = stops, wasFilled = document.fullscreenElement !== null;
           fills(null);
-          await passes(100);
+          await wait(100);
           if (stops - before !== Number(wasFilled && viewState.full)) throw new Error(`${stops - before} stops are pressed by leaving`);
           if (wasFilled) viewState.full = false;
         },
@@ -4834,14 +4834,14 @@ const PARTS = {
         async peeks() {
           const endPeek = stage.peek();
           if (random() < 0.5) endPeek();
-          await passes(random.below(2000));
+          await wait(random.below(2000));
           const isNewest = stage.peek();
-          await passes(1600);
+          await wait(1600);
           if (!('peek' in root.dataset)) throw new Error('the robot is not in its corner');
           endPeek();
           isNewest();
         },
-        waits: () => passes(300),
+        waits: () => wait(300),
       };
       const ends = new Set();
       for (let k = 10 + random.below(30); k > 0; k -= 1) {
@@ -4850,13 +4850,13 @@ const PARTS = {
         await actions[act]();
         if (stage.isFull !== viewState.full || ('big' in root.dataset) !== viewState.big) throw new Error(`after ${act} it is ${Object.keys(root.dataset)} in place of ${JSON.stringify(viewState)}`);
         if (!viewState.turns && camera !== (!viewState.whole && (viewState.full || viewState.big || 'peek' in root.dataset) ? 'near' : 'whole')) throw new Error(`after ${act} it is seen from ${camera}`);
-        await passes(random.below(60));
+        await wait(random.below(60));
         if (random() < 0.7) continue;
-        await passes(200);
+        await wait(200);
         if (Boolean(document.fullscreenElement) !== viewState.full) throw new Error(`after ${act} the screen is filled`);
       }
       await actions.lets();
-      await passes(9000);
+      await wait(9000);
       if ('peek' in root.dataset) throw new Error('the robot stays in its corner');
       return { ends: [...ends], seen: [] };
     };
@@ -4868,7 +4868,7 @@ const PARTS = {
     const page = freshPage();
     const phone = Object.assign(new EventTarget(), { matches: false });
     globalThis.matchMedia = () => phone;
-    await learns(page);
+    await loadTexts(page);
     const { pageState } = await page.load('page/page_state.js');
     const { showSide } = await page.load('page/sides.js');
     const { Phone } = await page.load('page/phone.js');
@@ -4974,13 +4974,13 @@ const PARTS = {
           return item;
         });
         const ownCount = registrations.filter(({ isOwn }) => isOwn).length, isForeign = registrations.length > ownCount;
-        playsNavigator({ serviceWorker: { getRegistrations: async () => registrations } });
+        replaceNavigator({ serviceWorker: { getRegistrations: async () => registrations } });
         const cached = new Set(['theirs', 'ours']);
         globalThis.caches = { keys: async () => [...cached], delete: async (name) => cached.delete(name) };
         ends = random.of(['given', 'given', 'used', 'lost']);
         let entryCount = 0;
         const tokens = [];
-        playsFetch(async (path, { headers, body }) => {
+        replaceFetch(async (path, { headers, body }) => {
           tokens.push(headers['X-TiniScript-Token']);
           if (path !== './enter') return answers({ ports: [] });
           entryCount += 1;
@@ -4993,8 +4993,8 @@ const PARTS = {
         page.load('robot/host.js').then((found) => { host = found; });
         const isEntryRefused = isForeign && code !== '';
         for (let tries = 0; !host && !reloads && tries < 200; tries += 1) {
-          await settles();
-          await passes(1);
+          await settle();
+          await wait(1);
         }
         const assertSame = (actual, expected, label) => { if (JSON.stringify(actual) !== JSON.stringify(expected)) throw new Error(`${label}: ${JSON.stringify(actual)} in place of ${JSON.stringify(expected)}`); };
         reloadedCode = reloads && random() < 0.8 ? code : '';
@@ -5004,7 +5004,7 @@ const PARTS = {
           const token = isEntryRefused ? before : !code ? before : ends === 'given' ? `token ${code}` : '';
           assertSame([host.entryFailure, host.hasHost, entryCount], [isEntryRefused ? 'host_worker' : !code || ends === 'given' ? '' : ends === 'used' ? 'host_used' : 'host_gone', token !== '', Number(code !== '' && !isEntryRefused)], `by ${hash}`);
           if (code && !isEntryRefused) assertSame(location.hash, '', 'the address');
-          await Promise.all([host.fetchPorts(), settles()]);
+          await Promise.all([host.fetchPorts(), settle()]);
           assertSame(tokens.at(-1), token, 'the token');
           if (!isFull && code && !isEntryRefused && ends === 'given') assertSame(store.getItem('tiniscript.token'), token, 'what is kept');
         }
@@ -5026,7 +5026,7 @@ const PARTS = {
       Arena: notingClass('arena'), Plot: notingClass('plot'), RunAnnouncer: notingClass('announcer'), Sounds: notingClass('sounds'),
       starsText: String, boutEndText: String, bumpSentence: String, WorldChoice: Choice, WorldDrawing: Drawing, replaceOptions() {}, makePictureOption() {}, makeDialPicture() {},
     });
-    await learns(page);
+    await loadTexts(page);
     const { pageState } = await page.load('page/page_state.js');
     const { SimulatorPanel } = await page.load('virtual/simulator_panel.js');
     pageState.robotName.set('tinibot');
@@ -5058,7 +5058,7 @@ const PARTS = {
     robot = virtualRobot(chanceOf(1), true);
     page.byId('arena').checkVisibility = () => true;
     const panel = new SimulatorPanel({ python, work: { world: 'w', sound: true }, whenChecked, storeCurrentWork() {}, pad: { offerRobot() {} } });
-    await settles();
+    await settle();
     const { dataset } = document.documentElement;
     let lastPlace = '', driven_ms = 0; // the place of STOP stays for a while, however a run has ended
     window.setInterval(() => {
@@ -5087,14 +5087,14 @@ const PARTS = {
         end = way;
         const before = begun;
         ways[way]();
-        await passes(random() < 0.5 ? random.below(30) : random.below(600));
+        await wait(random() < 0.5 ? random.below(30) : random.below(600));
         if (way !== 'run' || k > 1) continue;
-        await passes(1500);
+        await wait(1500);
         if (begun === before) throw new Error('it does not start');
       }
       ways.stop();
       wantsRun = false;
-      await passes(1500);
+      await wait(1500);
       if (startsAfterStop) throw new Error('it starts after a STOP');
       if (dataset['phase'] === 'running' || dataset['phase'] === 'paused') throw new Error('it goes on');
       let open = 0;
@@ -5102,34 +5102,34 @@ const PARTS = {
         const before = begun;
         open += 1;
         panel.tryAlone('F(1)', true, () => {}).then(() => { open -= 1; });
-        await passes(600);
+        await wait(600);
         pageState.breakpoints.set(pageState.breakpoints.value.slice(1));
-        await passes(900);
+        await wait(900);
         if (isToRun && (sentBreakpoints.length || pageState.virtualRun.value.ranges.length)) throw new Error(`a block that is tried stops at ${sentBreakpoints}, or is seen in the text`);
         if ((begun > before) !== isToRun) throw new Error(isToRun ? 'a block that is tried does not run' : 'it runs in the place of the whole program');
       };
       wantsRun = true;
       await tries(true);
       panel.play({ lesson: 1, seed: 1, until_ms: 900 });
-      await passes(600);
+      await wait(600);
       ways.points();
-      await passes(600);
+      await wait(600);
       if (sentBreakpoints.length) throw new Error(`a run that is shown stops at ${sentBreakpoints}`);
       ways.stop();
-      await passes(1500);
+      await wait(1500);
       if (open) throw new Error('a block that was tried never ends');
       ways.edits();
       ways.run();
-      await passes(8000); // until its end
+      await wait(8000); // until its end
       await tries(true);
-      await passes(8000);
+      await wait(8000);
       robot = runningRobot(random);
       ways.run();
-      await passes(500);
+      await wait(500);
       if (dataset['phase'] === 'running') await tries(false);
       ways.stop();
       wantsRun = false;
-      await passes(1500);
+      await wait(1500);
       return { ends: [end], seen: [] };
     };
   },
@@ -5150,14 +5150,14 @@ const answers = (found) => ({ ok: true, status: 200, json: async () => found });
 function runningRobot(random) {
   for (;;) {
     const robot = virtualRobot(random, false);
-    if (robot.does === 'runs') return robot;
+    if (robot.outcome === 'runs') return robot;
   }
 }
 
 for (let seed = 0; seed < Number(seeds); seed += 1) {
   const used = await PARTS[part]();
   const first = await used(chanceOf(seed + 1), false);
-  await settles();
+  await settle();
   const after = await used(chanceOf(seed + 1000), true);
   const alone = await (await PARTS[part]())(chanceOf(seed + 1000), true);
   const found = compared(after.seen, alone.seen);

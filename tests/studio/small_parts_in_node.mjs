@@ -4,7 +4,7 @@
 
 import { readFileSync } from 'node:fs';
 import { playedEditor, view } from './editor_in_node.mjs';
-import { chanceOf, choosesFile, freshPage, later, learns, made, now, passes, playsFetch, playsNavigator, settles, sources, words } from './page_in_node.mjs';
+import { chanceOf, chooseFile, freshPage, later, loadTexts, made, now, replaceFetch, replaceNavigator, settle, sources, wait, words } from './page_in_node.mjs';
 
 const HTML = readFileSync(`${sources}/index.html`, 'utf-8');
 const [first, seeds] = words.map(Number);
@@ -36,7 +36,7 @@ const TEXTS = JSON.parse(readFileSync(`${made}/texts.json`, 'utf-8'));
 /** Another language, whose sentences end with its name. */
 async function speaks(page, language) {
   const ends = (text) => (typeof text === 'string' ? `${text} ${language}` : Array.isArray(text) && typeof text[0] === 'string' ? text.map(ends) : text);
-  playsFetch(async () => ({ ok: true, json: async () => Object.fromEntries(Object.entries(TEXTS).map(([key, text]) => [key, key ? ends(text) : text])) }));
+  replaceFetch(async () => ({ ok: true, json: async () => Object.fromEntries(Object.entries(TEXTS).map(([key, text]) => [key, key ? ends(text) : text])) }));
   const { setLanguage } = await page.load('page/texts.js');
   await setLanguage(language);
 }
@@ -45,9 +45,9 @@ async function speaks(page, language) {
 const PARTS = {
   // Which screen is seen, and what the start shows: pictures that begin, earlier programs, stars.
   async start(random) {
-    playsNavigator({});
+    replaceNavigator({});
     const page = freshPage({}, HTML);
-    await learns(page);
+    await loadTexts(page);
     const { pageState } = await page.load('page/page_state.js');
     const { text } = await page.load('page/texts.js');
     const screens = await page.load('start/screens.js');
@@ -119,7 +119,7 @@ const PARTS = {
         if (isRefused) bad(new Error('refused'));
         else good();
         beginning = null;
-        await settles();
+        await settle();
         unhandled.splice(0);
         expected = [['see']];
       },
@@ -181,7 +181,7 @@ const PARTS = {
   // Earlier programs, of two tabs and of a storage that may bring anything: each is there once.
   async versions(random) {
     const page = freshPage();
-    await learns(page);
+    await loadTexts(page);
     const { deleteVersion, loadVersions, restoreVersion, isSameProgramAs, storeVersion } = await page.load('programs/versions.js');
     const KEY = 'tiniscript.versions';
     let model = [], at_ms = 1e12, deleted = [];
@@ -226,9 +226,9 @@ const PARTS = {
 
   // The window with a robot's name and colour.
   async own(random) {
-    playsNavigator({});
+    replaceNavigator({});
     const page = freshPage({}, HTML);
-    await learns(page);
+    await loadTexts(page);
     const { pageState } = await page.load('page/page_state.js');
     const { text } = await page.load('page/texts.js');
     const { showOwnRobot, validOwnRobot, COLOURS } = await page.load('page/own_robot.js');
@@ -281,7 +281,7 @@ const PARTS = {
 
   // Children press everything twice: what they hear a second time is not for what has come to its place.
   async twice(random) {
-    playsNavigator({});
+    replaceNavigator({});
     const page = freshPage({}, HTML);
     const { ignoreSecondPresses, isSecondPress } = await page.load('page/twice.js');
     ignoreSecondPresses();
@@ -336,7 +336,7 @@ const PARTS = {
 
   // The place of STOP: nothing else is there until a while after what moved has ended, or after a press.
   async stop(random) {
-    playsNavigator({});
+    replaceNavigator({});
     const page = freshPage({}, HTML);
     const { setStopNeeded } = await page.load('page/stop_place.js');
     const COMES_MS = 500, STAYS_MS = 1500;
@@ -374,7 +374,7 @@ const PARTS = {
 
   // The line under the world, of one run after another.
   async timeLine(random) {
-    playsNavigator({});
+    replaceNavigator({});
     const page = freshPage({}, HTML);
     const { TimeLine } = await page.load('virtual/time_line.js');
     const { Run } = await page.load('virtual/runs.js');
@@ -497,9 +497,9 @@ const PARTS = {
 
   // The window of the last runs.
   async runs(random) {
-    playsNavigator({});
+    replaceNavigator({});
     const page = freshPage({}, HTML);
-    await learns(page);
+    await loadTexts(page);
     const { pageState } = await page.load('page/page_state.js');
     const { text } = await page.load('page/texts.js');
     const { bugSentence } = await page.load('page/faults.js');
@@ -535,7 +535,7 @@ const PARTS = {
       const file = fileOf(content, isReadable);
       const given = gives(file);
       if (given === false) return;
-      await passes(50);
+      await wait(50);
       if (!isReadable) refuses(file.name, text('unreadable'));
       else if (error) refuses(file.name, text(`record_${error}`, { line: 7 }));
       else {
@@ -583,7 +583,7 @@ const PARTS = {
           return { file: `file of ${run.number}` };
         };
         press(button);
-        await passes(50);
+        await wait(50);
         if (run.fileText) is([asked, saved], [[], [run.fileText]], 'what is saved of one that was opened');
         else {
           is(asked, [['write_run', run.end_ms ?? run.readClock?.() ?? run.rows.at(-1)?.[0] ?? 0, run.origin.text, undefined]], 'what is asked for');
@@ -591,7 +591,7 @@ const PARTS = {
           if (isBroken) notice = bugSentence(error);
         }
       },
-      chooses: () => opens((file) => choosesFile(page.byId('run_file'), file)),
+      chooses: () => opens((file) => chooseFile(page.byId('run_file'), file)),
       async drops() {
         await opens((file) => {
           if (random() < 0.2) file.name = 'picture.png';
@@ -612,7 +612,7 @@ const PARTS = {
         const known = random.of([null, ...runs.newestFirst]);
         answers = () => ({ text: 'O', rows: [] });
         runsWindow.openData(new TextEncoder().encode('data'), 'n', known);
-        await passes(50);
+        await wait(50);
         is(reports.splice(0), [['play', 'data', 'O', known?.number]], 'what is played');
         isOpen = false;
       },
@@ -634,9 +634,9 @@ const PARTS = {
 
   // What runs is marked in the text, which is scrolled to where the program halts: once for each halt.
   async editor(random) {
-    playsNavigator({});
+    replaceNavigator({});
     const page = freshPage(playedEditor);
-    await learns(page);
+    await loadTexts(page);
     const { Editor } = await page.load('writing/editor.js');
     const editor = new Editor(page.byId('editor'));
     let haltedLine = 0, scrolled = -1, marked = [];
@@ -673,12 +673,12 @@ const PARTS = {
   // what is said is so.
   async keys(random) {
     const KEYS = 'tiniscript.link.keys';
-    playsNavigator({});
+    replaceNavigator({});
     const page = freshPage({
       replaceOptions() {}, makePictureOption() {}, makeSymbolPicture() {}, hasSerial: false, choosePort() {}, listKnownPorts: async () => [],
       HostRobot: class {}, hasHost: false, isPupil: false, isTeacher: false, post: async () => ({}), fetchPorts: async () => [],
     });
-    await learns(page);
+    await loadTexts(page);
     const { text } = await page.load('page/texts.js');
     const { loadText, storeText } = await page.load('page/kept.js');
     const { RobotPanel } = await page.load('robot/panel.js');
@@ -697,7 +697,7 @@ const PARTS = {
       },
     };
     new RobotPanel({ python, goTo() {}, recorder: new Recorder({ runs: new Runs(), play() {} }), place: new RunningPlace(), pad: { releaseAll() {}, offerRobot() {} } });
-    await passes(50);
+    await wait(50);
     const wanted = new Set();
     let count = 0;
     const puts = () => {
@@ -709,13 +709,13 @@ const PARTS = {
       async opens() {
         const keys = Array.from({ length: random.below(3) }, () => `f${random.below(9)}`);
         const kind = random.of(['keys', 'keys', 'wrong', 'broken', 'gone']);
-        choosesFile(page.byId('keys_file'), { name: random.of(['a.json', 'b.json']), slice: () => ({ arrayBuffer: async () => {
+        chooseFile(page.byId('keys_file'), { name: random.of(['a.json', 'b.json']), slice: () => ({ arrayBuffer: async () => {
           if (kind === 'gone') throw new Error('gone');
           return new TextEncoder().encode(kind === 'keys' ? `keys:${keys}` : kind).buffer;
         } }) });
-        await passes(random.below(80));
+        await wait(random.below(80));
         if (random() < 0.4) puts();
-        await passes(500);
+        await wait(500);
         if (kind === 'keys') for (const key of keys) wanted.add(key);
         is(page.byId('link_said').textContent, kind === 'keys' && keys.length ? text('say_keys', { count: keys.length }) : text('say_no_keys'), `what is said of a file that is ${kind}`);
       },
@@ -812,9 +812,9 @@ const PARTS = {
   // The words of devices and blocks: in the language of the page, and those of the text for who wants them.
   /** Which side of the robot has bumped into something, wherever it stands and looks. */
   async bumps(random) {
-    playsNavigator({});
+    replaceNavigator({});
     const page = freshPage();
-    await learns(page);
+    await loadTexts(page);
     const { bumpSentence } = await page.load('virtual/where.js');
     const pose = [0, 0, 0];
     const touchesAt = (degrees, distance) => {
@@ -830,9 +830,9 @@ const PARTS = {
   },
 
   async words(random) {
-    playsNavigator({});
+    replaceNavigator({});
     const page = freshPage();
-    await learns(page);
+    await loadTexts(page);
     const { pageState } = await page.load('page/page_state.js');
     const { ROBOTS, KINDS, devicesOf, deviceName, blockLabel, wordsOnBlock, tipOf, wordsOf, isRobot } = await page.load('page/words.js');
     let language = 'en', isSourceText = true, areShown = false;
@@ -865,7 +865,7 @@ const PARTS = {
 
   // The fields of blocks: numbers that fit their place, tones, names, units; what is typed, chosen and taken back.
   async fields(random) {
-    playsNavigator({});
+    replaceNavigator({});
     const { blocklyInNode } = await import('./blockly_in_node.mjs');
     const { blockly } = blocklyInNode();
     const fired = [], drop = { content: [], isClosed: () => {} };
@@ -878,7 +878,7 @@ const PARTS = {
     blockly.Field.prototype.getSize = () => null; // draws
     shared.widgetCreate_ = () => ({ inputMode: '' });
     const page = freshPage({ blockly });
-    await learns(page);
+    await loadTexts(page);
     const { text } = await page.load('page/texts.js');
     const { blockLabel } = await page.load('page/words.js');
     const { pageState } = await page.load('page/page_state.js');
@@ -1015,7 +1015,7 @@ const PARTS = {
 
   // Which world it is: shipped, own, one of before, or a lesson's; and those that are kept come back.
   async world(random) {
-    playsNavigator({});
+    replaceNavigator({});
     const given = () => freshPage({ makePictureOption: (label, value) => Object.assign(document.createElement('option'), { textContent: label, value }), makeWorldPicture() {}, makeBlocksPicture() {}, makeDialPicture() {}, makeSymbolPicture() {}, replaceOptions() {} });
     let page = given();
     let changed = 0;
@@ -1035,7 +1035,7 @@ const PARTS = {
     const OWN = ':own';
     let work = { world: random.of(['free', OWN, 'nobody knows it']) }, choice, pageState, words_, text, progress;
     const opens = async (isWhole = true) => {
-      await learns(page);
+      await loadTexts(page);
       ({ pageState } = await page.load('page/page_state.js'));
       words_ = await page.load('page/words.js');
       ({ text } = await page.load('page/texts.js'));
@@ -1045,7 +1045,7 @@ const PARTS = {
       is(await choice.restoreOwn(), isWhole, 'whether all can be read');
     };
     const opening = opens();
-    await passes(500);
+    await wait(500);
     await opening;
     let newest = null, before = [], brought = null, isKept = true, isDamaged = false, count = 0;
     const select = () => page.byId('world');
@@ -1093,12 +1093,12 @@ const PARTS = {
       async writes() {
         if (!newest) return;
         const written = choice.write(newest);
-        await passes(50);
+        await wait(50);
         is((await written).text, JSON.stringify(newest), 'what is written');
       },
       async reloads() {
         if (!isKept) return;
-        await passes(200);
+        await wait(200);
         const stores = ['localStorage', 'sessionStorage'].map((name) => [name, [...window[name]]]);
         page = given();
         for (const [name, all] of stores) for (const [key, value] of all) window[name].setItem(key, value);
@@ -1110,7 +1110,7 @@ const PARTS = {
           newest = null;
         }
         const again = opens(!isDamaged);
-        await passes(500);
+        await wait(500);
         await again;
       },
       speaks: () => speaks(page, random.of(LANGUAGES)),
@@ -1151,9 +1151,9 @@ for (const [part, begins] of Object.entries(PARTS)) {
         acted.push(act);
         done.add(act);
         await actions[act]();
-        await settles();
+        await settle();
         checks();
-        await passes(random.of(waits));
+        await wait(random.of(waits));
       }
       if (unhandled.length) throw new Fails(`unhandled ${unhandled}`);
     } catch (error) {

@@ -2,11 +2,11 @@
 // other tabs that store keys of their own at any moment. Prints as JSON, for each seed, how many keys were stored by others or
 // given to the robot, those that are not stored at the end, and those that the robot was given before they were.
 
-import { chanceOf, freshPage, later, learns, passes, playsNavigator, words } from './page_in_node.mjs';
+import { chanceOf, freshPage, later, loadTexts, replaceNavigator, wait, words } from './page_in_node.mjs';
 
-playsNavigator({});
+replaceNavigator({});
 const page = freshPage();
-await learns(page);
+await loadTexts(page);
 const { DirectRobot } = await page.load('robot/direct.js');
 for (let seed = 0; seed < Number(words[0]); seed += 1) {
   const random = chanceOf(seed + 1);
@@ -48,7 +48,7 @@ for (let seed = 0; seed < Number(words[0]); seed += 1) {
   const robot = new DirectRobot(python, port, { onEvent() {}, onEnd() {} }, keyStore);
   robot.connect('tinibot', 'en').catch(() => {});
   for (let k = 0; k < 40; k += 1) {
-    await passes(random.below(300));
+    await wait(random.below(300));
     if (random() < 0.3) {
       const key = String(count += 1);
       all.add(key);
@@ -56,6 +56,6 @@ for (let seed = 0; seed < Number(words[0]); seed += 1) {
     }
   }
   robot.leave();
-  await passes(500);
+  await wait(500);
   console.log(JSON.stringify({ count: all.size, lost: [...all].filter((key) => !stored.includes(key)), early }));
 }

@@ -4,7 +4,7 @@
 
 import { readFileSync } from 'node:fs';
 import { codemirror, forEachDiagnostic, playedEditor, view } from './editor_in_node.mjs';
-import { chanceOf, compared, freshPage, later, made, passes, playsFetch, playsNavigator, PROGRAM, settles, sources, virtualRobot, words } from './page_in_node.mjs';
+import { chanceOf, compared, freshPage, later, made, PROGRAM, replaceFetch, replaceNavigator, settle, sources, virtualRobot, wait, words } from './page_in_node.mjs';
 
 const [firstSeed, seedCount] = words.map(Number);
 const HTML = readFileSync(`${sources}/index.html`, 'utf-8');
@@ -121,8 +121,8 @@ async function opens(stores) {
     async makePicture() { return null; }
   }
   const still = (name) => function made() { return new Proxy(this, { get: (_, property) => (property === 'then' ? undefined : () => name) }); };
-  playsNavigator({ language: 'en-US' });
-  playsFetch(async () => {
+  replaceNavigator({ language: 'en-US' });
+  replaceFetch(async () => {
     await later(5);
     return new Response(TEXTS);
   });
@@ -153,11 +153,11 @@ async function opens(stores) {
   let isComing = true;
   const loading = page.load('main.js').finally(() => { isComing = false; });
   while (isComing) {
-    await settles();
-    await passes(5);
+    await settle();
+    await wait(5);
   }
   await loading;
-  await passes(500);
+  await wait(500);
   const { pageState } = await page.load('page/page_state.js');
   const { virtualRun } = pageState;
   virtualRun.subscribe(({ isHeld }) => { if (!isHeld) view.sought = -1; }); // somebody scrolls away
@@ -302,15 +302,15 @@ async function beginsAnew(tab) {
   for (const item of document.querySelectorAll('dialog')) item.close();
   press(byId('view_text'), 0);
   press(byId('start_lessons'), 0);
-  await passes(1000);
+  await wait(1000);
   for (const number of ['1', '2', '1']) {
     chooses('lesson', number);
-    await passes(1000);
+    await wait(1000);
   }
   for (const id of ['stop', 'home', 'start_write', 'view_text', 'seen_arena', 'bar_new']) press(byId(id), 0);
   for (const id of ['words', 'why']) if (byId(id).getAttribute('aria-pressed') === 'true') press(byId(id), 0);
   for (const [id, value] of [['language', 'en'], ['robot', 'tinibot'], ['world', 'obstacles'], ['speed', '1']]) if (byId(id).value !== value) chooses(id, value);
-  await passes(5000);
+  await wait(5000);
   Object.assign(tab, { isAnew: true, stays: null, isComing: false });
 }
 
@@ -408,10 +408,10 @@ async function checksLate(tab) {
   tab.python.late = () => 3000;
   tab.stays = null;
   view.dispatch({ changes: { from: view.state.doc.length, insert: '\nF(2)' } });
-  await passes(2000);
+  await wait(2000);
   if (byId('status').textContent !== '…') throw new Error(`${byId('status').textContent} is said, and it was of the text before`);
   tab.python.late = () => 5;
-  await passes(9000);
+  await wait(9000);
   checksRest(tab);
 }
 
@@ -424,12 +424,12 @@ async function checksNote({ pageState: { note } }) {
     note.set('said');
     edits();
     if (note.value === '') throw new Error('what is said of an edit goes with it');
-    await passes(4000);
+    await wait(4000);
     act();
     if (note.value === 'said') throw new Error(`what was said of an edit stays when somebody ${act.name}`);
   }
   press(byId('stop'));
-  await passes(4000);
+  await wait(4000);
 }
 
 /** All that is seen. */
@@ -466,12 +466,12 @@ async function playsSeed(seed) {
   const ends = [];
   for (let k = 20 + random.below(40); k > 0; k -= 1) {
     ends.push(playActions(random, tab));
-    await passes(random.of([0, random.below(50), random.below(800)]));
+    await wait(random.of([0, random.below(50), random.below(800)]));
     checkStays(tab);
     checksHalt(tab);
     if (k % 20) continue;
     tab.python.late = () => 5;
-    await passes(4000);
+    await wait(4000);
     checkStays(tab);
     checksRest(tab);
     await checksLate(tab);
@@ -479,11 +479,11 @@ async function playsSeed(seed) {
     tab.isComing = false;
     tab.python.late = delay;
     playActions(random, tab, ['retypes', 'waits']);
-    await passes(1000);
+    await wait(1000);
     checkStays(tab);
   }
   tab.python.late = () => 5;
-  await passes(3000);
+  await wait(3000);
   await beginsAnew(tab);
   const stores = Object.fromEntries(['localStorage', 'sessionStorage'].map((name) => [name, [...window[name]]]));
   await beginsAnew(tab); // as the other tab
@@ -495,7 +495,7 @@ async function playsSeed(seed) {
     for (let k = 8; k > 0; k -= 1) {
       const did = playActions(same, item);
       const waited_ms = same.of([300, 2000, 6000]);
-      await passes(waited_ms);
+      await wait(waited_ms);
       if (waited_ms > 1000) checksRest(item);
       all.push([did, seenIn(item)]);
     }

@@ -1,9 +1,9 @@
 // node world_parts_in_node.mjs SOURCES MADE FIRST SEEDS: worlds through random histories of what is drawn, moved, turned, set and
 // deleted. Says where a change is not the one that was asked for, or changes anything else. Prints the last world of each.
 
-import { chanceOf, freshPage, playsNavigator, words } from './page_in_node.mjs';
+import { chanceOf, freshPage, replaceNavigator, words } from './page_in_node.mjs';
 
-playsNavigator({});
+replaceNavigator({});
 const page = freshPage();
 const parts = await page.load('world/parts.js');
 const { WORLDS, WORLD_LIMITS } = await page.load('page/words.js');
