@@ -26,13 +26,13 @@ const isNothing = sameAs(NOTHING);
 class Held {
   #holders = [];
 
-  holds(name, controls) {
+  hold(name, controls) {
     const before = this.#holders.find((item) => item.name === name);
     if (sameAs(controls)(before?.controls ?? NOTHING)) return;
     this.#holders = [...this.#holders.filter((item) => item !== before), { name, controls }];
   }
 
-  lets(test) {
+  letGo(test) {
     this.#holders = this.#holders.filter(({ name }) => !test(name));
   }
 
@@ -44,8 +44,8 @@ class Held {
 
 async function history(seed) {
   const random = chanceOf(seed);
-  let gamepads = [], looks = 0;
-  replaceNavigator({ getGamepads: () => { looks += 1; return gamepads; } });
+  let gamepads = [], lookCount = 0;
+  replaceNavigator({ getGamepads: () => { lookCount += 1; return gamepads; } });
   const page = freshPage();
   const Part = globalThis.HTMLElement;
   Part.prototype.getBoundingClientRect = () => ({ left: 0, top: 0, width: SIZE, height: SIZE });
@@ -79,7 +79,7 @@ async function history(seed) {
 
   // The model.
   const acted = [], ends = new Set();
-  const fails = (error) => { throw new Error(`seed ${seed}, after ${acted.slice(-12).join(', ')}: ${error}`); };
+  const fail = (error) => { throw new Error(`seed ${seed}, after ${acted.slice(-12).join(', ')}: ${error}`); };
   const held = new Held();
   const offered = {};
   const fingers = new Map(); // those that press, each with its part, and whether it is heeded
@@ -93,42 +93,42 @@ async function history(seed) {
     ...Math.hypot(right, down) > 0.15 ? stickAt(right, -down) : { x: 0, y: 0 },
     keys: GAMEPAD_KEYS.reduce((keys, button, index) => keys | (buttons[button].pressed ? 1 << index : 0), 0),
   });
-  const sees = () => {
-    held.lets((name) => typeof name === 'string' && name.startsWith('pad') && !there().some(({ index }) => name === `pad${index}`));
+  const readGamepads = () => {
+    held.letGo((name) => typeof name === 'string' && name.startsWith('pad') && !there().some(({ index }) => name === `pad${index}`));
     if (driven) for (const gamepad of there()) {
       const controls = heldByGamepad(gamepad);
       if (isNothing(controls)) stale.delete(gamepad.index);
-      if (!stale.has(gamepad.index)) held.holds(`pad${gamepad.index}`, controls);
+      if (!stale.has(gamepad.index)) held.hold(`pad${gamepad.index}`, controls);
     }
   };
-  const lets = () => {
-    held.lets(() => true);
+  const letGo = () => {
+    held.letGo(() => true);
     for (const finger of fingers.values()) finger.isHeeded = false;
     pressed = new Map();
     for (const { index } of there()) stale.add(index);
   };
-  const chooses = () => {
+  const chooseDriven = () => {
     const next = offered[SIDES[pageState.sideId.value]];
     if (next === driven) return;
-    lets();
+    letGo();
     driven = next;
-    sees();
+    readGamepads();
   };
-  const types = () => {
-    const moves = isShown(page.byId('pad_stick')) && !keyButtons.slice(0, 4).some(isShown);
+  const holdKeys = () => {
+    const isStickMoved = isShown(page.byId('pad_stick')) && !keyButtons.slice(0, 4).some(isShown);
     let keys = 0, right = 0, up = 0;
     for (const index of pressed.values()) {
-      if (moves && index < 4) [right, up] = [right + Object.values(ARROWS)[index][0], up + Object.values(ARROWS)[index][1]];
+      if (isStickMoved && index < 4) [right, up] = [right + Object.values(ARROWS)[index][0], up + Object.values(ARROWS)[index][1]];
       else keys |= 1 << index;
     }
-    held.holds('keyboard', { keys, ...stickAt(right, up) });
+    held.hold('keyboard', { keys, ...stickAt(right, up) });
   };
   const point = (kind, part, pointerId, [clientX, clientY] = [SIZE / 2, SIZE / 2], button = 0) => part.dispatchEvent(Object.assign(new Event(kind), { pointerId, clientX, clientY, button }));
   const somewhere = () => [random.below(SIZE), random.below(SIZE)];
-  const goes = (pointerId, at) => {
+  const moveFinger = (pointerId, at) => {
     const { part } = fingers.get(pointerId);
     const keyIndex = keyButtons.indexOf(part);
-    held.holds(pointerId, keyIndex < 0 ? { keys: 0, ...stickAt((at[0] - SIZE / 2) / (SIZE / 3), (SIZE / 2 - at[1]) / (SIZE / 3)) } : { keys: 1 << keyIndex, x: 0, y: 0 });
+    held.hold(pointerId, keyIndex < 0 ? { keys: 0, ...stickAt((at[0] - SIZE / 2) / (SIZE / 3), (SIZE / 2 - at[1]) / (SIZE / 3)) } : { keys: 1 << keyIndex, x: 0, y: 0 });
   };
   const keyEvent = (kind, target, key, code, more = {}) => {
     const event = Object.assign(new Event(kind, { cancelable: true, bubbles: true }), { key, code, ...more });
@@ -137,7 +137,7 @@ async function history(seed) {
   };
   /** Each does something and tells the model of it. */
   const actions = {
-    offers() {
+    offer() {
       const side = random.of(['driving', 'link']);
       const remoteWords = random() < 0.3 ? [] : REMOTE_DEVICES.map((device) => device.text).filter(() => random() < 0.6);
       const lacksRemote = random() < 0.2;
@@ -147,24 +147,24 @@ async function history(seed) {
       const before = offered[side];
       pad.offerRobot(side, robot);
       if (!before || before.lacksRemote !== lacksRemote || `${before.remoteWords}` !== `${remoteWords}`) offered[side] = robot;
-      chooses();
+      chooseDriven();
     },
-    offersAgain() {
+    offerAgain() {
       const [side, robot] = random.of(Object.entries(offered)) ?? [];
-      if (robot) pad.offerRobot(side, { ...robot, sendControls: () => fails('the one that is as before is told') });
+      if (robot) pad.offerRobot(side, { ...robot, sendControls: () => fail('the one that is as before is told') });
     },
-    takesAway() {
+    takeAway() {
       const side = random.of(['driving', 'link']);
       pad.offerRobot(side, null);
       delete offered[side];
-      chooses();
+      chooseDriven();
     },
-    sees() {
+    switchSide() {
       const side = random.of(Object.keys(SIDES));
       pageState.sideId.set(side);
-      chooses();
+      chooseDriven();
     },
-    presses() {
+    press() {
       const pointerId = 1 + random.below(3), part = random.of(parts);
       if (fingers.has(pointerId) || !isShown(part)) return;
       const at = somewhere(), button = random() < 0.1 ? 2 : 0;
@@ -172,25 +172,25 @@ async function history(seed) {
       if (button) return;
       const isTaken = !part.dataset.key && [...fingers.values()].some((other) => other.part === part && other.isHeeded);
       fingers.set(pointerId, { part, isHeeded: !isTaken });
-      if (!isTaken) goes(pointerId, at);
+      if (!isTaken) moveFinger(pointerId, at);
     },
-    moves() {
+    move() {
       const [pointerId, finger] = random.of([...fingers]) ?? [];
       if (!finger) return;
       const at = somewhere();
       point('pointermove', finger.part, pointerId, at);
-      if (finger.isHeeded) goes(pointerId, at);
+      if (finger.isHeeded) moveFinger(pointerId, at);
     },
-    hovers() { // what presses nothing
+    hover() { // what presses nothing
       const pointerId = 1 + random.below(3), part = random.of(parts);
       if (!fingers.has(pointerId)) point('pointermove', part, pointerId, somewhere());
     },
-    releases() {
+    release() {
       const [pointerId, finger] = random.of([...fingers]) ?? [];
       if (!finger) return;
       point(random.of(['pointerup', 'pointercancel', 'lostpointercapture']), finger.part, pointerId);
       fingers.delete(pointerId);
-      held.lets((name) => name === pointerId);
+      held.letGo((name) => name === pointerId);
     },
     keys() {
       const place = random();
@@ -202,39 +202,39 @@ async function history(seed) {
       if (!more.repeat && pressed.has(code)) return;
       const index = button && [' ', 'Enter'].includes(name) ? keyButtons.indexOf(button) : KEYBOARD.indexOf(name.length > 1 ? name : name.toLowerCase());
       const isOurs = driven && !driven.lacksRemote && index >= 0 && !owners.includes(target) && !Object.keys(more).some((item) => item !== 'repeat');
-      if (keyEvent('keydown', target, name, code, more) !== Boolean(isOurs)) fails(`the browser ${isOurs ? 'does what' : 'cannot do what'} ${name} does`);
+      if (keyEvent('keydown', target, name, code, more) !== Boolean(isOurs)) fail(`the browser ${isOurs ? 'does what' : 'cannot do what'} ${name} does`);
       if (!isOurs || more.repeat) return;
       pressed.set(code, index);
-      types();
+      holdKeys();
     },
-    keysUp() {
+    liftKey() {
       const code = random.of([...pressed.keys(), 'x']);
       keyEvent('keyup', free, code, code);
-      if (pressed.delete(code)) types();
+      if (pressed.delete(code)) holdKeys();
     },
     gamepads() {
       const before = gamepads;
-      const tells = [];
+      const eventNames = [];
       gamepads = [0, 1].map((index) => {
         const was = before[index];
         if (random() < 0.5) return was;
         if (random() < 0.25) {
-          if (was?.connected) tells.push('gamepaddisconnected');
+          if (was?.connected) eventNames.push('gamepaddisconnected');
           return random() < 0.5 && was ? { ...was, connected: false } : null;
         }
-        if (!was?.connected) tells.push('gamepadconnected');
+        if (!was?.connected) eventNames.push('gamepadconnected');
         const isRest = random() < 0.4;
         return {
           index, connected: true, axes: isRest ? [random.of([0, 0.1]), -0.05] : [random.of([0, 0.1, 0.5, -1]), random.of([0, -0.1, 1, -0.7])],
           buttons: Array.from({ length: 16 }, () => ({ pressed: !isRest && random() < 0.1 })),
         };
       });
-      for (const item of tells) if (item === 'gamepadconnected' || random() < 0.5) {
+      for (const item of eventNames) if (item === 'gamepadconnected' || random() < 0.5) {
         dispatchEvent(new Event(item));
-        sees();
+        readGamepads();
       }
     },
-    lets() {
+    letGo() {
       const way = random.of(['stop', 'Escape', 'blur', 'pagehide', 'freeze', 'hidden']);
       ends.add(way);
       if (way === 'stop') page.byId('stop').click();
@@ -243,69 +243,69 @@ async function history(seed) {
         document.visibilityState = 'hidden';
         document.dispatchEvent(new Event('visibilitychange'));
       } else dispatchEvent(new Event(way));
-      lets();
+      letGo();
     },
-    returns() {
+    comeBack() {
       document.visibilityState = 'visible';
       document.dispatchEvent(new Event('visibilitychange'));
     },
-    speaks() {
+    changeLanguage() {
       pageState.language.set(random.of(['en', 'es', 'pt']));
     },
   };
-  const told = () => {
+  const checkTold = () => {
     const last = log.findLast(({ number }) => number === driven?.number) ?? NOTHING;
     const all = driven && !driven.lacksRemote ? held.all : NOTHING;
-    if (!sameAs(last)(all)) fails(`${JSON.stringify(all)} is held, and ${JSON.stringify(last)} is told`);
-    if (styles.translate !== undefined && styles.translate !== `${held.all.x * 0.75}% ${-held.all.y * 0.75}%`) fails(`the stick is seen at ${styles.translate}`);
+    if (!sameAs(last)(all)) fail(`${JSON.stringify(all)} is held, and ${JSON.stringify(last)} is told`);
+    if (styles.translate !== undefined && styles.translate !== `${held.all.x * 0.75}% ${-held.all.y * 0.75}%`) fail(`the stick is seen at ${styles.translate}`);
     keyButtons.forEach((part, index) => {
-      if (part.className.includes('held') !== Boolean(held.all.keys & 1 << index)) fails(`${part.dataset.key} is seen otherwise`);
+      if (part.className.includes('held') !== Boolean(held.all.keys & 1 << index)) fail(`${part.dataset.key} is seen otherwise`);
     });
     if (!isNothing(all)) ends.add('held');
   };
-  const shown = () => {
+  const checkShown = () => {
     const box = page.byId('pad');
-    if (box.hidden !== !driven) fails('it is seen without a robot, or is not seen');
+    if (box.hidden !== !driven) fail('it is seen without a robot, or is not seen');
     if (!driven) return;
     const side = page.byId(SIDES[pageState.sideId.value]);
-    if (box.parent !== side || side.children.at(side.id === 'link' ? 1 : -1) !== box) fails('it is seen elsewhere, or at another robot');
+    if (box.parent !== side || side.children.at(side.id === 'link' ? 1 : -1) !== box) fail('it is seen elsewhere, or at another robot');
     const wrong = parts.find((part) => part.hidden === isShown(part));
-    if (wrong) fails(`${wrong.dataset.key ?? 'the stick'} is seen, or is not`);
-    for (const [id, group] of [['pad_arrows', keyButtons.slice(0, 4)], ['pad_letters', keyButtons.slice(4)]]) if (page.byId(id).hidden === group.some(isShown)) fails(`${id} is seen, or is not`);
-    if (page.byId('pad_said').textContent !== (driven.lacksRemote ? text('pad_deaf') : '')) fails(`it says ${page.byId('pad_said').textContent}`);
+    if (wrong) fail(`${wrong.dataset.key ?? 'the stick'} is seen, or is not`);
+    for (const [id, group] of [['pad_arrows', keyButtons.slice(0, 4)], ['pad_letters', keyButtons.slice(4)]]) if (page.byId(id).hidden === group.some(isShown)) fail(`${id} is seen, or is not`);
+    if (page.byId('pad_said').textContent !== (driven.lacksRemote ? text('pad_deaf') : '')) fail(`it says ${page.byId('pad_said').textContent}`);
     const name = keyButtons.findIndex((part, index) => part.attributes['aria-label'] !== devices[index].labels[pageState.language.value]);
-    if (name >= 0) fails(`a key is called ${keyButtons[name].attributes['aria-label']}`);
+    if (name >= 0) fail(`a key is called ${keyButtons[name].attributes['aria-label']}`);
   };
   for (let k = 0; k < ACTS; k += 1) {
-    const act = random.of([...Object.keys(actions), 'presses', 'presses', 'presses', 'presses', 'moves', 'keys', 'keys', 'releases', 'gamepads', 'gamepads', ...driven ? [] : Array(12).fill('offers')]);
+    const act = random.of([...Object.keys(actions), 'press', 'press', 'press', 'press', 'move', 'keys', 'keys', 'release', 'gamepads', 'gamepads', ...driven ? [] : Array(12).fill('offer')]);
     acted.push(act);
     ends.add(act);
     const [drivenBefore, length] = [driven, log.length];
     actions[act]();
     log.slice(length).forEach((item, index) => {
-      if (item.number !== driven?.number && (index || item.number !== drivenBefore?.number || !isNothing(item))) fails(`another robot is told ${JSON.stringify(item)}`);
+      if (item.number !== driven?.number && (index || item.number !== drivenBefore?.number || !isNothing(item))) fail(`another robot is told ${JSON.stringify(item)}`);
     });
-    told();
-    shown();
-    const [looksBefore, logged] = [looks, log.length];
+    checkTold();
+    checkShown();
+    const [lookCountBefore, logged] = [lookCount, log.length];
     const waits_ms = random.of([FRAME_MS + 1, FRAME_MS + 1, 60, 250, 700]);
     const begins_ms = now();
     await wait(waits_ms);
-    sees();
-    told();
+    readGamepads();
+    checkTold();
     const frames = Math.ceil(waits_ms / FRAME_MS);
-    if (looks - looksBefore > (driven && there().length ? frames + 1 : 1)) fails(`in ${frames} pictures gamepads are looked at ${looks - looksBefore} times`);
-    if (log.slice(logged).some((item) => item.number !== driven?.number)) fails('one that is not driven is told');
-    if (now() - begins_ms !== waits_ms) fails('time');
+    if (lookCount - lookCountBefore > (driven && there().length ? frames + 1 : 1)) fail(`in ${frames} pictures gamepads are looked at ${lookCount - lookCountBefore} times`);
+    if (log.slice(logged).some((item) => item.number !== driven?.number)) fail('one that is not driven is told');
+    if (now() - begins_ms !== waits_ms) fail('time');
     const isHeld = driven && !driven.lacksRemote && !isNothing(held.all);
-    if (isHeld && now() - log.at(-1).ms >= REPEAT_MS + 1) fails('what is held is not said again');
+    if (isHeld && now() - log.at(-1).ms >= REPEAT_MS + 1) fail('what is held is not said again');
   }
   log.forEach((item, index) => {
     const before = log.slice(0, index).findLast((other) => other.number === item.number);
     const since_ms = before && item.ms - before.ms;
-    if (!before && isNothing(item)) fails('a robot is told first that nothing is held');
-    if (before && sameAs(before)(item) && (isNothing(item) || since_ms !== REPEAT_MS)) fails(`it is said again after ${since_ms} ms`);
-    if (before && !isNothing(before) && since_ms > REPEAT_MS) fails(`it was held, and not said for ${since_ms} ms`);
+    if (!before && isNothing(item)) fail('a robot is told first that nothing is held');
+    if (before && sameAs(before)(item) && (isNothing(item) || since_ms !== REPEAT_MS)) fail(`it is said again after ${since_ms} ms`);
+    if (before && !isNothing(before) && since_ms > REPEAT_MS) fail(`it was held, and not said for ${since_ms} ms`);
   });
   return [...ends];
 }

@@ -46,7 +46,7 @@ const steps = {
   see: () => { document.visibilityState = 'visible'; heard.dispatchEvent(new Event('visibilitychange')); },
   side: (id) => pageState.sideId.set(id),
   stop: () => page.byId('stop').click(),
-  passes: wait,
+  wait,
 };
 for (const [what, ...args] of story) await steps[what](...args);
 const shown = [...parts, page.byId('pad_stick')].filter((item) => !item.hidden).map((item) => item.dataset.key ?? 'stick');

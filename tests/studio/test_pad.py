@@ -40,8 +40,8 @@ def sent_to_robot(path: Path, *story: Any) -> list[Any]:
 
 def test_held_keys_are_sent_at_each_change_and_repeatedly(page_data: Path) -> None:
     packets = sent_to_robot(
-        page_data, DRIVING_OFFER, ["passes", 1000], ["down", "KEY_UP", 1], ["passes", 450],
-        ["up", "KEY_UP", 1], ["passes", 2000],
+        page_data, DRIVING_OFFER, ["wait", 1000], ["down", "KEY_UP", 1], ["wait", 450],
+        ["up", "KEY_UP", 1], ["wait", 2000],
     )  # fmt: skip
     assert REPEAT_MS == 200
     assert packets == [
@@ -55,7 +55,7 @@ def test_held_keys_are_sent_at_each_change_and_repeatedly(page_data: Path) -> No
 def test_a_stick_follows_the_finger_and_returns_when_released(page_data: Path) -> None:
     packets = sent_to_robot(
         page_data, DRIVING_OFFER, ["down", "stick", 1, 80, 40], ["move", "stick", 1, 500, 60],
-        ["move", "stick", 1, 501, 60], ["up", "stick", 1, 500, 60], ["passes", 900],
+        ["move", "stick", 1, 501, 60], ["up", "stick", 1, 500, 60], ["wait", 900],
     )  # fmt: skip
     assert packets == [[0, 0, 50, 50], [0, 0, 100, 0], [0, *NO_KEYS]]
 
@@ -89,8 +89,7 @@ def test_keys_typed_into_other_elements_are_ignored(
 ) -> None:
     """Keys of a text field, of the browser, or held before."""
     assert (
-        sent_to_robot(page_data, DRIVING_OFFER, ["keydown", "ArrowUp", fields], ["passes", 500])
-        == []
+        sent_to_robot(page_data, DRIVING_OFFER, ["keydown", "ArrowUp", fields], ["wait", 500]) == []
     )
 
 
@@ -123,11 +122,11 @@ def test_releasing_everything_requires_new_presses(page_data: Path, end: list[An
     packets = sent_to_robot(
         page_data, DRIVING_OFFER, gamepad, ["event", "gamepadconnected"],
         ["down", "stick", 1, 60, 20],
-        ["keydown", "b"], ["passes", 10], end, ["passes", 500], ["see"], ["side", "side_virtual"],
+        ["keydown", "b"], ["wait", 10], end, ["wait", 500], ["see"], ["side", "side_virtual"],
         DRIVING_OFFER, ["move", "stick", 1, 99, 60], ["keydown", "b", {"repeat": True}],
-        ["passes", 500],
-        ["up", "stick", 1], ["keyup", "b"], ["passes", 500],
-        ["gamepads", [[0, 0], []]], ["passes", 100], ["keydown", "b"],
+        ["wait", 500],
+        ["up", "stick", 1], ["keyup", "b"], ["wait", 500],
+        ["gamepads", [[0, 0], []]], ["wait", 100], ["keydown", "b"],
     )  # fmt: skip
     release_index = packets.index([10, *NO_KEYS])
     assert [10, A_KEY | 32, 0, 100] in [
@@ -146,8 +145,8 @@ def test_a_key_with_a_missed_release_is_dropped_at_the_next_one(page_data: Path)
 def test_a_gamepad_holds_until_it_is_unplugged(page_data: Path) -> None:
     packets = sent_to_robot(
         page_data, DRIVING_OFFER, ["gamepads", [[0.1, -0.05], []]], ["event", "gamepadconnected"],
-        ["passes", 50], ["gamepads", [[0.1, -1], [14, 1]]], ["passes", 20], ["gamepads"],
-        ["passes", 500],
+        ["wait", 50], ["gamepads", [[0.1, -1], [14, 1]]], ["wait", 20], ["gamepads"],
+        ["wait", 500],
     )  # fmt: skip
     assert [held_keys for _, *held_keys in packets] == [[4 | 32, 10, 100], NO_KEYS]
     assert packets[1][0] - packets[0][0] <= 20, "it need not be told of"
@@ -168,8 +167,8 @@ def test_only_controls_that_the_program_reads_are_shown(page_data: Path) -> None
 def test_a_robot_without_a_remote_control_gets_no_key_messages(page_data: Path) -> None:
     deaf = ["offer", "link", {"remoteWords": ALL_READINGS, "lacksRemote": True}]
     outcome = play_story(
-        page_data, ["side", "side_real"], deaf, ["keydown", "ArrowUp"], ["passes", 500], ["stop"],
-        ["gamepads", [[0, -1], [0]]], ["event", "gamepadconnected"], ["passes", 500],
+        page_data, ["side", "side_real"], deaf, ["keydown", "ArrowUp"], ["wait", 500], ["stop"],
+        ["gamepads", [[0, -1], [0]]], ["event", "gamepadconnected"], ["wait", 500],
     )  # fmt: skip
     assert outcome["told"] == [] == outcome["shown"]
     assert outcome["said"].startswith("This robot has no remote control.")
@@ -181,10 +180,10 @@ def test_a_newly_shown_robot_gets_only_later_presses(
     """The one before hears that all is let go."""
     link_offer = ["offer", "link", {"remoteWords": ALL_READINGS}]
     outcome = play_story(
-        page_data, DRIVING_OFFER, link_offer, ["down", "KEY_UP", 1], ["passes", 10],
+        page_data, DRIVING_OFFER, link_offer, ["down", "KEY_UP", 1], ["wait", 10],
         ["side", "side_real"],
-        ["passes", 500], ["up", "KEY_UP", 1], ["down", "KEY_A", 1], ["side", "side_virtual"],
-        ["passes", 500],
+        ["wait", 500], ["up", "KEY_UP", 1], ["down", "KEY_A", 1], ["side", "side_virtual"],
+        ["wait", 500],
     )  # fmt: skip
     assert outcome["told"] == [
         [0, "driving", UP_KEY, 0, 0], [10, "driving", *NO_KEYS],
@@ -197,9 +196,9 @@ def test_the_same_robot_keeps_its_held_keys(page_data: Path) -> None:
         page_data,
         DRIVING_OFFER,
         ["down", "KEY_UP", 1],
-        ["passes", 10],
+        ["wait", 10],
         DRIVING_OFFER,
-        ["passes", 190],
+        ["wait", 190],
     )
     assert packets == [[0, UP_KEY, 0, 0], [200, UP_KEY, 0, 0]]
 
