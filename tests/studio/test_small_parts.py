@@ -18,21 +18,21 @@ SCRIPT = Path(__file__).with_name("small_parts_in_node.mjs")
 HISTORIES = 12
 # What the histories of each part have to have done, for them to be about something.
 NEEDED_ACTS = {
-    "start": {"begins", "ends", "back", "keeps", "opens", "stars"},
-    "versions": {"keeps", "deletes", "restores", "stores"},
-    "own": {"opens", "names", "paints", "fills"},
-    "twice": {"presses", "keys", "hides"},
-    "stop": {"begins", "ends", "connects", "leaves", "presses"},
-    "timeLine": {"begins", "moves", "keys", "resizes"},
-    "editor": {"halts", "runs", "ends", "types"},
-    "runs": {"opens", "sees", "saves", "chooses", "drops"},
-    "keys": {"opens", "puts"},
-    "tabs": {"opens", "copies", "reloads", "works", "draws", "damages"},
-    "fields": {"types", "typesWords", "takesBack", "opens", "playsKey", "steps", "names"},
-    "camera": {"looks", "wanders"},
+    "start": {"begin", "end", "back", "keep", "open", "stars"},
+    "versions": {"keep", "delete", "restore", "store"},
+    "own": {"open", "name", "paint", "fill"},
+    "twice": {"press", "keys", "hide"},
+    "stop": {"begin", "end", "connect", "leave", "press"},
+    "timeLine": {"begin", "move", "keys", "resize"},
+    "editor": {"halt", "run", "end", "type"},
+    "runs": {"open", "see", "save", "choose", "drop"},
+    "keys": {"open", "put"},
+    "tabs": {"open", "copy", "reload", "work", "draw", "damage"},
+    "fields": {"type", "typeWords", "takeBack", "open", "playKey", "step", "name"},
+    "camera": {"look", "wander"},
     "bumps": {"front", "left", "back", "right", "free"},
-    "words": {"shows", "speaks"},
-    "world": {"chooses", "brings", "puts", "keeps", "reloads"},
+    "words": {"show", "changeLanguage"},
+    "world": {"choose", "bring", "put", "keep", "reload"},
 }
 
 
