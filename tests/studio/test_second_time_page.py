@@ -94,7 +94,7 @@ def test_a_used_page_behaves_like_a_fresh_one(page_data: Path, part: str) -> Non
 
 
 # Of the whole page: what each row of seeds has to have done first, for it to be about something.
-NEEDED_ACTIONS = {"run", "stop", "step", "types", "builds", "robot"}
+NEEDED_ACTIONS = {"run", "stop", "step", "type", "build", "robot"}
 LEAST_ACTION_KINDS = 30  # of doing something
 ROW = 8  # seeds
 

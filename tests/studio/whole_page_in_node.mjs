@@ -79,7 +79,7 @@ class Python {
 const TEXTS = readFileSync(`${made}/texts.json`, 'utf-8');
 
 /** A tab in which this is kept. */
-async function opens(stores) {
+async function openTab(stores) {
   const python = new Python();
   const seen = { arena: null, blocks: null };
   class Arena {
@@ -98,7 +98,7 @@ async function opens(stores) {
     form = { body: [], loose: [] };
     layoutText = 'L0';
     isDragging = false;
-    begins = 0; // of other programs
+    beginCount = 0; // of other programs
     has = {};
     constructor(_, __, level, page) {
       this.page = page;
@@ -115,7 +115,7 @@ async function opens(stores) {
     showRunning(ranges) { this.has.running = ranges.map(({ line }) => line); }
     showFault(range, sentence) { this.has.fault = sentence; }
     setLevel(level) { this.has.level = level; }
-    beginProgram() { this.begins += 1; }
+    beginProgram() { this.beginCount += 1; }
     levelOf() { return 'few'; }
     setRobot() {} setTaughtBlocks() {} setGivenBlocks() {} updateLanguage() {} resize() {} setRanges() {} showMates() {} goTo() {}
     async makePicture() { return null; }
@@ -130,14 +130,14 @@ async function opens(stores) {
     #last = Promise.resolve();
     constructor() {
       super();
-      this.#says({ begun: true }, 1);
-      this.#says({ id: 0 }, 20);
+      this.#say({ begun: true }, 1);
+      this.#say({ id: 0 }, 20);
     }
-    #says(data, ms) { setTimeout(() => this.dispatchEvent(Object.assign(new Event('message'), { data })), ms); }
+    #say(data, ms) { setTimeout(() => this.dispatchEvent(Object.assign(new Event('message'), { data })), ms); }
     postMessage({ id, request, data }) {
       const asked = JSON.parse(request), text = new TextDecoder().decode(data);
       this.#last = this.#last.then(() => later(python.late())).then(() => {
-        this.#says({ id, answer: JSON.stringify(python.answer(asked, text)) }, 0);
+        this.#say({ id, answer: JSON.stringify(python.answer(asked, text)) }, 0);
       });
     }
     terminate() {}
@@ -173,7 +173,7 @@ async function opens(stores) {
 const LINES = ['F(1)', 'B(1)', 'R(1)', 'KEY_A', 'LIFT(1)', 'W(?)', 'BEEP(1)', '// robot'];
 const byId = (id) => document.getElementById(id);
 const press = (part, detail = 1) => part?.dispatchEvent(Object.assign(new Event('click', { bubbles: true, cancelable: true }), { detail, pointerType: 'mouse' }));
-const chooses = (id, value) => {
+const choose = (id, value) => {
   byId(id).value = value;
   byId(id).dispatchEvent(new Event('change', { bubbles: true }));
 };
@@ -196,51 +196,51 @@ const KEPT = ['runs_open', 'undo', 'redo']; // bring back what a tab has kept of
 
 /** Each is done, unless it cannot be: then it says so. */
 const ACTS = {
-  presses(random, { isAnew }) {
+  press(random, { isAnew }) {
     const buttons = document.querySelectorAll('button').filter((item) => isSeen(item) && !NOT_PRESSED.includes(item.id) && !(isAnew && KEPT.includes(item.id)));
     const button = random.of(buttons);
     press(button, random() < 0.2 ? 0 : 1);
     return button?.id || button?.textContent;
   },
-  drives(random) {
+  drive(random) {
     const buttons = ['run', 'run', 'step', 'pause', 'stop', 'lesson_next', 'lesson_check'].map(byId).filter(isSeen);
     if (!buttons.length) return false;
     const button = random.of(buttons);
     press(button);
     return button.id;
   },
-  types(random) {
+  type(random) {
     if (document.documentElement.dataset.screen === 'start') return false;
     const text = Array.from({ length: random.below(4) }, () => `${random.of(LINES)}\n`).join('');
     view.dispatch({ changes: { from: random() < 0.5 ? 0 : view.state.doc.length, to: view.state.doc.length, insert: text } });
   },
-  builds(random, { seen }) {
+  build(random, { seen }) {
     const { blocks } = seen;
     if (!blocks || byId('writing').dataset.view !== 'blocks' || document.documentElement.dataset.screen === 'start') return false;
     blocks.form.body.push(...formOf(random.of(LINES)).body);
     blocks.page.onChange();
   },
-  learns(random) {
+  learn(random) {
     const ways = [...document.querySelectorAll('button').filter(({ textContent }) => textContent === 'Add it to the program'), byId('start_lessons'), byId('side_lessons'), byId('lesson')].filter(isSeen);
     if (!ways.length) return false;
     const way = random.of(ways);
     if (way.id !== 'lesson') press(way);
-    else chooses('lesson', random.of(['1', '2']));
+    else choose('lesson', random.of(['1', '2']));
     return way.id || way.textContent;
   },
   robot(random) {
     if (!isSeen(byId('robot'))) return false;
-    chooses('robot', random.of(['tinibot', 'liner']));
+    choose('robot', random.of(['tinibot', 'liner']));
     return 'robot';
   },
-  retypes(random, tab) { // while a program that names its robot gets another one
+  retype(random, tab) { // while a program that names its robot gets another one
     if (!ACTS.robot(random)) return false;
-    return ACTS.types(random, tab) === false ? 'robot' : 'types';
+    return ACTS.type(random, tab) === false ? 'robot' : 'type';
   },
-  world: (random) => isSeen(byId('world')) && chooses('world', random.of(WORLDS)),
-  speed: (random) => isSeen(byId('speed')) && chooses('speed', random.of(['0.1', '1', '4'])),
-  level: (random) => isSeen(byId('level')) && chooses('level', random.of(['few', 'usual', 'all'])),
-  lesson: (random) => isSeen(byId('lesson')) && chooses('lesson', random.of(['1', '2'])),
+  world: (random) => isSeen(byId('world')) && choose('world', random.of(WORLDS)),
+  speed: (random) => isSeen(byId('speed')) && choose('speed', random.of(['0.1', '1', '4'])),
+  level: (random) => isSeen(byId('level')) && choose('level', random.of(['few', 'usual', 'all'])),
+  lesson: (random) => isSeen(byId('lesson')) && choose('lesson', random.of(['1', '2'])),
   points(random, { pageState }) {
     if (byId('writing').dataset.view !== 'text' || !view.state.doc.length) return false;
     const linesNow = () => pageState.breakpoints.value.map(({ line }) => line);
@@ -254,7 +254,7 @@ const ACTS = {
     const keys = [{ key: 'Escape' }, { key: 'f' }, ...isAnew ? [] : [{ key: 'z', ctrlKey: true }, { key: 'Z', ctrlKey: true, shiftKey: true }]];
     byId('editor').dispatchEvent(Object.assign(new Event('keydown', { bubbles: true, cancelable: true }), random.of(keys)));
   },
-  looks(random) {
+  look(random) {
     if (!isSeen(byId('time_at'))) return false;
     byId('time_at').value = String(random.below(2000));
     byId('time_at').dispatchEvent(new Event('input', { bubbles: true }));
@@ -268,35 +268,35 @@ const ACTS = {
     location.hash = '';
     dispatchEvent(new Event('popstate'));
   },
-  language: (random) => isSeen(byId('language')) && chooses('language', random.of(['en', 'es'])),
-  draws(random) {
+  language: (random) => isSeen(byId('language')) && choose('language', random.of(['en', 'es'])),
+  draw(random) {
     if (!isSeen(byId('arena'))) return false;
     const point = (kind) => byId('arena').dispatchEvent(Object.assign(new Event(kind, { bubbles: true, cancelable: true }), { isPrimary: true, button: 0, pointerId: 1, clientX: random.below(200), clientY: random.below(100) }));
     for (const kind of ['pointerdown', 'pointermove', 'pointermove', random.of(['pointerup', 'pointerup', 'pointercancel', 'pointermove'])]) point(kind);
   },
-  names(random) {
+  rename(random) {
     if (!isSeen(byId('program_name'))) return false;
     byId('program_name').value = random.of(['', 'one', 'two']);
     byId('program_name').dispatchEvent(new Event('input', { bubbles: true }));
   },
-  shares() {
+  share() {
     if (!isSeen(byId('share'))) return false;
     byId('share').open = !byId('share').open;
     byId('share').dispatchEvent(new Event('toggle'));
   },
-  hides() {
+  hide() {
     document.hidden = true;
     document.dispatchEvent(new Event('visibilitychange'));
     document.hidden = false;
   },
-  writes(random) { // whoever presses in the text or the blocks
+  write(random) { // whoever presses in the text or the blocks
     for (const kind of ['pointerenter', 'pointerdown', 'focusin', 'pointerup']) byId('writing').dispatchEvent(Object.assign(new Event(kind, { bubbles: true }), { pointerType: random.of(['mouse', 'touch']), buttons: 0 }));
   },
-  waits: () => {},
+  wait: () => {},
 };
 
 /** What somebody presses who wants to begin anew: `begin_anew` of `tests/support/studio.py`, and the first step of a lesson. */
-async function beginsAnew(tab) {
+async function beginAnew(tab) {
   const { phone } = tab;
   if (phone.matches) ACTS.phone(null, { phone });
   for (const item of document.querySelectorAll('dialog')) item.close();
@@ -304,14 +304,14 @@ async function beginsAnew(tab) {
   press(byId('start_lessons'), 0);
   await wait(1000);
   for (const number of ['1', '2', '1']) {
-    chooses('lesson', number);
+    choose('lesson', number);
     await wait(1000);
   }
   for (const id of ['stop', 'home', 'start_write', 'view_text', 'seen_arena', 'bar_new']) press(byId(id), 0);
   for (const id of ['words', 'why']) if (byId(id).getAttribute('aria-pressed') === 'true') press(byId(id), 0);
-  for (const [id, value] of [['language', 'en'], ['robot', 'tinibot'], ['world', 'obstacles'], ['speed', '1']]) if (byId(id).value !== value) chooses(id, value);
+  for (const [id, value] of [['language', 'en'], ['robot', 'tinibot'], ['world', 'obstacles'], ['speed', '1']]) if (byId(id).value !== value) choose(id, value);
   await wait(5000);
-  Object.assign(tab, { isAnew: true, stays: null, isComing: false });
+  Object.assign(tab, { isAnew: true, typedText: null, isComing: false });
 }
 
 /** Where the text editor marks what runs, by their lines. */
@@ -333,20 +333,20 @@ const saidOf = (part) => (typeof part === 'string' ? part : [part.textContent, p
 const keptWork = () => JSON.parse(window.sessionStorage.getItem('tiniscript.work'));
 
 /** What changes neither the program nor how large the robot is seen; and what may change the program a while later. */
-const PASSIVE = ['types', 'robot', 'language', 'speed', 'looks', 'hides', 'waits', 'points', 'pause', 'stop', 'words', 'theme', 'sound', 'erase_ways', 'seen_arena', 'seen_plot', 'seen_trace', 'other', 'names', 'shares'];
-const LATER = ['', 'builds', 'undo', 'redo', 'start_lessons', 'side_lessons', 'lesson', 'lesson_next', 'home', 'back', 'Add it to the program'];
+const PASSIVE = ['type', 'robot', 'language', 'speed', 'look', 'hide', 'wait', 'points', 'pause', 'stop', 'words', 'theme', 'sound', 'erase_ways', 'seen_arena', 'seen_plot', 'seen_trace', 'other', 'rename', 'share'];
+const LATER = ['', 'build', 'undo', 'redo', 'start_lessons', 'side_lessons', 'lesson', 'lesson_next', 'home', 'back', 'Add it to the program'];
 
 /** What an act changes, and what it does not. @returns what is checked once it is done, and later on */
-function expects(tab) {
+function makeCheck(tab) {
   const { dataset } = document.documentElement;
-  const before = { screen: dataset.screen, robot: keptWork().robot, full: 'full' in dataset, side: dataset.side, isLesson: keptWork().lesson !== '', text: view.state.doc.toString(), begins: tab.seen.blocks?.begins };
+  const before = { screen: dataset.screen, robot: keptWork().robot, full: 'full' in dataset, side: dataset.side, isLesson: keptWork().lesson !== '', text: view.state.doc.toString(), beginCount: tab.seen.blocks?.beginCount };
   return (did) => {
     const text = view.state.doc.toString();
-    if (PASSIVE.includes(did) && before.full !== 'full' in dataset) throw new Error(`${did} makes the robot small`);
+    if (PASSIVE.includes(did) && before.full !== 'full' in dataset) throw new Error(`after ${did} the robot is small`);
     if (/^side_/.test(did) && dataset.side !== before.side && 'full' in dataset) throw new Error(`${did} is behind the robot`);
-    if (['home', 'back'].includes(did) && !before.isLesson && text !== before.text) throw new Error(`${did} takes the program`);
+    if (['home', 'back'].includes(did) && !before.isLesson && text !== before.text) throw new Error(`after ${did} the program is another one`);
     if (['new', 'bar_new'].includes(did) && (text || keptWork().lesson || keptWork().own)) throw new Error(`${did} is of ${keptWork().lesson}`);
-    if (['new', 'bar_new'].includes(did) && before.begins !== undefined && tab.seen.blocks.begins === before.begins) throw new Error(`after ${did} the blocks stand as those of before`);
+    if (['new', 'bar_new'].includes(did) && before.beginCount !== undefined && tab.seen.blocks.beginCount === before.beginCount) throw new Error(`after ${did} the blocks stand as those of before`);
     if (did === 'start_write' && dataset.half !== 'program') throw new Error('the program is not seen');
     if (['start_lessons', 'start_robot'].includes(did) && dataset.half !== 'robot') throw new Error('what was chosen is not seen');
     if (did === 'Add it to the program' && keptWork().lesson !== LESSONS[byId('lesson_page').dataset.lesson - 1].name) throw new Error(`a lesson's program is of ${keptWork().lesson || 'nobody'}`);
@@ -354,25 +354,25 @@ function expects(tab) {
     if (wasLeft && !tab.versions.loadVersions().some(tab.versions.isSameProgramAs(before))) throw new Error(`${before.text} is lost at the start screen`);
     if (['bar_new', 'new'].includes(did) && 'big' in dataset) throw new Error(`after ${did} the robot is seen as in a run`);
     if (LATER.includes(did)) tab.isComing = true;
-    if (!PASSIVE.includes(did) || tab.isComing) tab.stays = null;
-    else if (did === 'types') tab.stays = text;
-    checkStays(tab);
+    if (!PASSIVE.includes(did) || tab.isComing) tab.typedText = null;
+    else if (did === 'type') tab.typedText = text;
+    checkTypedText(tab);
   };
 }
 
-function checkStays({ stays }) {
+function checkTypedText({ typedText }) {
   const text = view.state.doc.toString();
-  if (typeof stays === 'string' && text !== stays) throw new Error(`${JSON.stringify(stays)} was typed, and is ${JSON.stringify(text)} now`);
+  if (typeof typedText === 'string' && text !== typedText) throw new Error(`${JSON.stringify(typedText)} was typed, and is ${JSON.stringify(text)} now`);
 }
 
 /** The part where the program halts is seen. */
-function checksHalt({ pageState: { virtualRun: { value: { isHeld, ranges: [range] } } } }) {
+function checkHalt({ pageState: { virtualRun: { value: { isHeld, ranges: [range] } } } }) {
   const offset = isHeld && range ? view.state.doc.line(range.line).from + range.column - 1 : view.sought;
   if (view.sought !== offset) throw new Error(`the program halts at ${offset}, and the text is scrolled to ${view.sought}`);
 }
 
 /** What has to be said and shown of the program, whoever has done what; nothing is under way. */
-function checksRest({ pageState, summaryOf, versions, countAllStars, seen }) {
+function checkRest({ pageState, summaryOf, versions, countAllStars, seen }) {
   const { checkResult, virtualRun, robotName, programText, fault, breakpoints } = pageState;
   const assertSame = (actual, expected, label) => { if (JSON.stringify(actual) !== JSON.stringify(expected)) throw new Error(`${label}: ${JSON.stringify(actual)} in place of ${JSON.stringify(expected)}`); };
   const { phase, state, screen } = document.documentElement.dataset;
@@ -403,30 +403,30 @@ function checksRest({ pageState, summaryOf, versions, countAllStars, seen }) {
 }
 
 /** What is said of a program does not pass for what is said of a newer one, however long that takes. */
-async function checksLate(tab) {
+async function checkLate(tab) {
   if (document.documentElement.dataset.screen === 'start') return;
   tab.python.late = () => 3000;
-  tab.stays = null;
+  tab.typedText = null;
   view.dispatch({ changes: { from: view.state.doc.length, insert: '\nF(2)' } });
   await wait(2000);
   if (byId('status').textContent !== '…') throw new Error(`${byId('status').textContent} is said, and it was of the text before`);
   tab.python.late = () => 5;
   await wait(9000);
-  checksRest(tab);
+  checkRest(tab);
 }
 
 /** What was said of an edit outlasts its own text, and goes with the next edit or with a run. */
-async function checksNote({ pageState: { note } }) {
-  const edits = () => view.dispatch({ changes: { from: view.state.doc.length, insert: '\nF(1)' } });
-  const runs = () => press(byId('run'));
-  for (const act of [edits, runs]) {
+async function checkNote({ pageState: { note } }) {
+  const edit = () => view.dispatch({ changes: { from: view.state.doc.length, insert: '\nF(1)' } });
+  const run = () => press(byId('run'));
+  for (const act of [edit, run]) {
     if (!isSeen(byId('run'))) return;
     note.set('said');
-    edits();
+    edit();
     if (note.value === '') throw new Error('what is said of an edit goes with it');
     await wait(4000);
     act();
-    if (note.value === 'said') throw new Error(`what was said of an edit stays when somebody ${act.name}`);
+    if (note.value === 'said') throw new Error(`what was said of an edit stays after ${act.name}`);
   }
   press(byId('stop'));
   await wait(4000);
@@ -443,11 +443,11 @@ function seenIn({ seen }) {
   ]));
 }
 
-const MOSTLY = ['presses', 'presses', 'drives', 'types', 'builds', 'presses', 'learns', 'retypes'];
+const MOSTLY = ['press', 'press', 'drive', 'type', 'build', 'press', 'learn', 'retype'];
 function playActions(random, tab, names = random() < 0.7 ? MOSTLY : Object.keys(ACTS)) {
   for (;;) {
     const name = random.of(names);
-    const check = expects(tab);
+    const check = makeCheck(tab);
     const found = ACTS[name](random, tab);
     if (found === false) continue;
     const did = typeof found === 'string' ? found : name;
@@ -456,10 +456,10 @@ function playActions(random, tab, names = random() < 0.7 ? MOSTLY : Object.keys(
   }
 }
 
-async function playsSeed(seed) {
+async function playSeed(seed) {
   location.hash = '';
   const random = chanceOf(seed + 1);
-  const tab = await opens({});
+  const tab = await openTab({});
   const delay = () => random.below(random.of([10, 10, 300]));
   tab.python.late = delay;
   tab.python.verdict = () => random.of(['', '', 'passed', 'failed', 'mistakes']);
@@ -467,51 +467,51 @@ async function playsSeed(seed) {
   for (let k = 20 + random.below(40); k > 0; k -= 1) {
     ends.push(playActions(random, tab));
     await wait(random.of([0, random.below(50), random.below(800)]));
-    checkStays(tab);
-    checksHalt(tab);
+    checkTypedText(tab);
+    checkHalt(tab);
     if (k % 20) continue;
     tab.python.late = () => 5;
     await wait(4000);
-    checkStays(tab);
-    checksRest(tab);
-    await checksLate(tab);
-    await checksNote(tab);
+    checkTypedText(tab);
+    checkRest(tab);
+    await checkLate(tab);
+    await checkNote(tab);
     tab.isComing = false;
     tab.python.late = delay;
-    playActions(random, tab, ['retypes', 'waits']);
+    playActions(random, tab, ['retype', 'wait']);
     await wait(1000);
-    checkStays(tab);
+    checkTypedText(tab);
   }
   tab.python.late = () => 5;
   await wait(3000);
-  await beginsAnew(tab);
+  await beginAnew(tab);
   const stores = Object.fromEntries(['localStorage', 'sessionStorage'].map((name) => [name, [...window[name]]]));
-  await beginsAnew(tab); // as the other tab
-  const plays = async (item) => {
+  await beginAnew(tab); // as the other tab
+  const play = async (item) => {
     const same = chanceOf(seed + 1000);
     item.python.runs = 0;
     item.python.verdict = () => same.of(['', 'passed', 'failed', 'mistakes']);
-    const all = [['begins', seenIn(item)]];
+    const all = [['begin', seenIn(item)]];
     for (let k = 8; k > 0; k -= 1) {
       const did = playActions(same, item);
       const waited_ms = same.of([300, 2000, 6000]);
       await wait(waited_ms);
-      if (waited_ms > 1000) checksRest(item);
+      if (waited_ms > 1000) checkRest(item);
       all.push([did, seenIn(item)]);
     }
     return all;
   };
-  const after = await plays(tab);
-  const fresh = await opens(stores);
-  await beginsAnew(fresh);
-  const alone = await plays(fresh);
+  const after = await play(tab);
+  const fresh = await openTab(stores);
+  await beginAnew(fresh);
+  const alone = await play(fresh);
   let k = 0;
   while (k < after.length - 1 && JSON.stringify(after[k]) === JSON.stringify(alone[k])) k += 1;
   console.log(JSON.stringify({ ends, acts: after.slice(0, k + 1).map(([did]) => did), ...compared(after[k], alone[k]), unhandled: unhandled.splice(0) }));
 }
 
 try {
-  for (let seed = firstSeed; seed < firstSeed + seedCount; seed += 1) await playsSeed(seed);
+  for (let seed = firstSeed; seed < firstSeed + seedCount; seed += 1) await playSeed(seed);
   process.exit(0);
 } catch (error) {
   console.error(error);
