@@ -127,10 +127,10 @@ const PARTS = {
         if (this.isOpen) throw failure('InvalidStateError');
         if (this.isGone) throw failure('NetworkError');
         this.isOpen = true;
-        const ends = () => { this.writable = null; };
+        const end = () => { this.writable = null; };
         this.writable = new WritableStream({
-          close: ends,
-          abort: ends,
+          close: end,
+          abort: end,
           write: async (chunk) => {
             if (this.isGone) throw failure('NetworkError');
             if (this.isStuck) await new Promise(() => {});
@@ -138,12 +138,12 @@ const PARTS = {
           },
         });
       }
-      gives(bytes) { this.#controller.enqueue(new Uint8Array(bytes)); }
-      errs(name) {
+      give(bytes) { this.#controller.enqueue(new Uint8Array(bytes)); }
+      fail(name) {
         this.#stream = null;
         this.#controller.error(failure(name));
       }
-      goes() {
+      unplug() {
         this.isGone = true;
         this.#stream = null;
         this.#controller.error(failure('NetworkError'));
@@ -173,15 +173,15 @@ const PARTS = {
         const act = random.of(isGood ? ['hears', 'writes', 'reset'] : ['hears', 'hears', 'errs', 'errs', 'writes', 'reset', 'goes', 'stuck']);
         if (act === 'hears') {
           const bytes = Array.from({ length: 1 + random.below(5) }, () => random.below(256));
-          device.gives(bytes);
+          device.give(bytes);
           lineBytes.push(...bytes);
-        } else if (act === 'errs') device.errs(random.of(['FramingError', 'ParityError', 'BreakError', 'BufferOverrunError']));
+        } else if (act === 'errs') device.fail(random.of(['FramingError', 'ParityError', 'BreakError', 'BufferOverrunError']));
         else if (act === 'writes') {
           written.push(k);
           port.write(new Uint8Array([k])).catch(() => ends.push('failed')).finally(() => { settledCount += 1; });
         } else if (act === 'reset') port.reset();
         else if (act === 'stuck') device.isStuck = true;
-        else device.goes();
+        else device.unplug();
         ends.push(act);
         await wait(act === 'reset' ? 400 : 5);
         if (device.isGone) break;
@@ -270,19 +270,19 @@ const PARTS = {
     const { loadDoneLessons, storeDoneLesson } = await page.load('lesson/progress.js');
     const { pageState } = await page.load('page/page_state.js');
     let room = null;
-    replaceFetch((_, { headers, body }) => room.asked(headers['X-TiniScript-Token'], JSON.parse(body)));
+    replaceFetch((_, { headers, body }) => room.answer(headers['X-TiniScript-Token'], JSON.parse(body)));
     const notes = [];
     const panel = { isFree: true, connectByHost: () => notes.push('to the robot'), endWitness() {} };
     const work = { text: 'F(1)', robot: 'tinibot' };
     let handout = null, openedTexts = []; // what the teacher gives to all, and what of it this pupil's page has opened
-    const puts = (given) => {
+    const put = (given) => {
       if (given.text.startsWith('H')) openedTexts.push(given.text);
       else notes.push(['given', given.text]);
       work.text = given.text;
       return true; // nobody is asked outside a group
     };
     const views = { join: () => {}, showMates: () => {}, isBusy: false };
-    new Pupil({ panel, work, views, keepProgram: () => true, putProgram: puts, clearProgram: () => notes.push('empty'), fetchNewestRunFile: async () => '' });
+    new Pupil({ panel, work, views, keepProgram: () => true, putProgram: put, clearProgram: () => notes.push('empty'), fetchNewestRunFile: async () => '' });
     const box = page.byId('class_pupil');
     const [join, , buttons] = box.children;
     const [ask, quit, connect] = buttons.children;
@@ -315,11 +315,11 @@ const PARTS = {
       const end = isGood ? 'goes on' : 'removed';
       const returnedWork = isGood && { key: 'one', text: 'given', robot: 'tinibot', lessons: [] };
       room = {
-        async asked(by, request) {
+        async answer(by, request) {
           if (request.do === 'join') {
             joins += 1;
             await later(20);
-            return answers({ token });
+            return responseOf({ token });
           }
           if (by !== token || !by) { // a look of the class before
             if (request.do === 'stop') strayStopCount += 1;
@@ -330,18 +330,18 @@ const PARTS = {
             stops.push(request.group_stops);
             await later(random.below(300));
             if (!isCalm && random() < 0.5) throw new Broken();
-            return answers({ stops: stops.length });
+            return responseOf({ stops: stops.length });
           }
           if (request.do === 'run') {
             givenRuns.push(request.asked);
-            return answers({});
+            return responseOf({});
           }
           const { opened, ...asked } = request;
           notes.push([now() - began_ms, asked]);
           if (over) lateCount += 1;
           const isOut = ends === 'removed';
-          const travels = () => later(isCalm ? 5 : 5 + random.below(900));
-          await travels();
+          const travel = () => later(isCalm ? 5 : 5 + random.below(900));
+          await travel();
           const lost = !isCalm && random() < (isGood ? 0.4 : 0.2) ? random.of(['look', 'answer']) : '';
           if (lost === 'look') throw new Broken();
           if (isOut) return { ok: false, status: 403 };
@@ -353,42 +353,42 @@ const PARTS = {
           if (wants !== undefined) classState.place = wants ? 0 : -1;
           if (classState.place === 0 && before !== 0) turns += 1;
           const answer = over ? { over } : { ...group, place: classState.place, waiting: 0, robots: 1, robot: '', left_s: 9, name: 'Ana', hand: classState.isUp, ...(returnedWork && !took && { given: returnedWork }), ...(isOffered && handout && hasOpened !== handout.key && { handout }) };
-          await travels();
+          await travel();
           if (lost) throw new Broken();
           if (!over) [driver, runAsked] = [answer.driver, answer.run];
-          return answers(answer);
+          return responseOf(answer);
         },
       };
       const group = { groups: [], driver: '', run: '' }; // as the class tells of it
       let driver = '', runAsked = ''; // as the page has heard
       let strayStopCount = 0; // stops that no class has
       const stops = [], givenRuns = [];
-      const pressesStop = async () => {
+      const pressStop = async () => {
         const before = stops.length + strayStopCount, isDriven = driver !== '' && !over && ends === 'goes on';
         page.byId('stop').click();
         await settle();
         if (stops.length + strayStopCount - before !== Number(isDriven)) throw new Error(`${stops.length + strayStopCount - before} stops are sent, and ${driver || 'nobody'} drives`);
       };
       const changes = {
-        writes: () => { work.text = `F(${random.below(2)})`; },
+        write: () => { work.text = `F(${random.below(2)})`; },
         robot: () => { work.robot = random.of(['tinibot', 'liner']); },
         lesson: () => storeDoneLesson(`lesson${random.below(9)}`),
         ownRobot: () => pageState.ownRobot.set({ name: '', colour: random.below(2) }),
-        checks: () => { [dataset['state'], dataset['image']] = [random.of(['stale', 'checked']), random.of(['', '00'])]; },
+        check: () => { [dataset['state'], dataset['image']] = [random.of(['stale', 'checked']), random.of(['', '00'])]; },
       };
-      const handsOut = () => { handout = { key: `key ${(entries += 1)}`, lesson: 0, text: `H(${entries})`, robot: 'tinibot' }; };
+      const handOut = () => { handout = { key: `key ${(entries += 1)}`, lesson: 0, text: `H(${entries})`, robot: 'tinibot' }; };
       const presses = {
         ...changes,
         ask: () => { pressedState.place = 0; ask.click(); },
         quit: () => { pressedState.place = -1; quit.click(); },
         hand: () => { pressedState.isUp = hand.attributes['aria-pressed'] !== 'true'; hand.click(); },
         groups: () => { group.groups = ['red', 'tan'].slice(random.below(3)).map((name) => ({ name, members: ['Luz', 'Teo'].slice(random.below(3)) })); },
-        drives: () => { group.driver = random.of(['', 'Luz']); },
+        drive: () => { group.driver = random.of(['', 'Luz']); },
         run: () => { group.run = `run ${(entries += 1)}`; },
-        stops: pressesStop,
+        stop: pressStop,
         ...(!isGood && {
-          handsOut,
-          opens: () => { if (!handoutBox.hidden) handoutBox.children[1].click(); },
+          handOut,
+          open: () => { if (!handoutBox.hidden) handoutBox.children[1].click(); },
         }),
         nothing: () => {},
       };
@@ -408,7 +408,7 @@ const PARTS = {
       while (!isGood && join.hidden) await wait(50 + random.below(50));
       if (!isGood) {
         if (![hand, ask, quit, connect, handoutBox, page.byId('side_class')].every(({ hidden }) => hidden)) throw new Error('outside of a class there are its buttons');
-        await pressesStop();
+        await pressStop();
       }
       if (new Set(openedTexts).size < openedTexts.length) throw new Error(`${openedTexts} are opened`);
       if (!isGood) return { ends: [ends], seen: [] };
@@ -426,7 +426,7 @@ const PARTS = {
       }
       if (classState.place !== pressedState.place || classState.isUp !== pressedState.isUp) throw new Error(`not what was pressed last: ${JSON.stringify([classState, pressedState])}`);
       if (countNotes('to the robot') > turns || countNotes('given') > 1) throw new Error(`${countNotes('to the robot')} times to the robot in ${turns} turns, given ${countNotes('given')} times`);
-      await pressesStop();
+      await pressStop();
       const listed = page.byId('class').children[0].children[2].children.map(({ children: [name] }) => name);
       const wantedGroups = group.groups.map(({ name, members }) => (members.length ? `${name} (${members.join(', ')})` : name));
       if (page.byId('side_class').hidden || `${listed}` !== `${wantedGroups}`) throw new Error(`the groups ${listed} are seen in place of ${wantedGroups}`);
@@ -434,7 +434,7 @@ const PARTS = {
       if (stops.some((number, k) => number < stops[k - 1])) throw new Error(`stops are counted ${stops}`);
       if (connect.hidden !== (classState.place !== 0 || !panel.isFree)) throw new Error('who cannot connect may, or who can may not');
       seen.push([document.documentElement.dataset['pupil'], join.hidden, hand.attributes]);
-      if (random() < 0.3 || !handout) handsOut();
+      if (random() < 0.3 || !handout) handOut();
       isOffered = true; // also what the pupil before at this page has opened
       await wait(2500);
       if (handoutBox.hidden) throw new Error('a pupil misses what the teacher gives to all');
@@ -473,19 +473,19 @@ const PARTS = {
       let shownWork = ''; // given work that nobody has taken off the screen
       let noticeKey = ''; // what the page is to say
       let page, work, loadVersions, textOf;
-      const isLaw = (when) => {
+      const checkLaw = (when) => {
         const places = loadVersions().map(({ text }) => text);
         for (const text of givenTexts) if (!teacherList.has(text) && screen !== text && !places.includes(text)) throw new Error(`${when}: ${text} is nowhere`);
         if (shownWork && screen !== shownWork) throw new Error(`${when}: ${shownWork} has gone off the screen by itself`);
         if (new Set(pageRequests).size !== pageRequests.length) throw new Error(`${when}: the page asks again: ${pageRequests}`);
         if (page.byId('note').textContent !== (noticeKey && textOf(noticeKey))) throw new Error(`${when}: the page says ${page.byId('note').textContent}, and not ${noticeKey}`);
       };
-      const puts = (text) => {
+      const put = (text) => {
         shownWork = '';
         screen = text;
         if (document.documentElement.dataset['group']) groupText = text;
       };
-      const loads = async (stores) => {
+      const load = async (stores) => {
         page = freshPage({ generate: () => ({ toCanvas() {} }), correction: {} });
         for (const [name, pairs] of Object.entries(stores)) for (const [key, value] of pairs) window[name].setItem(key, value);
         Object.assign(document.documentElement.dataset, { class: '', state: 'stale', image: '' });
@@ -494,7 +494,7 @@ const PARTS = {
         await loadTexts(page);
         pageRequests = [];
         shownWork = noticeKey = '';
-        replaceFetch((_, { body }) => answersTo(JSON.parse(body)));
+        replaceFetch((_, { body }) => handle(JSON.parse(body)));
         const { Pupil } = await page.load('class/pupil.js');
         const { Programs } = await page.load('programs/programs.js');
         ({ loadVersions } = await page.load('programs/versions.js'));
@@ -508,9 +508,9 @@ const PARTS = {
             return { version: 1, changes: [], ids: [], drafts: [], pending: [], since: 0, epoch: '', told: 0, why: '', count: 0, kept: { name: 'page' } };
           },
         };
-        const programs = new Programs({ python, work, putProgram: ({ text }) => { puts(text); shownWork = text; noticeKey = 'class_given'; }, makePicture() {} });
+        const programs = new Programs({ python, work, putProgram: ({ text }) => { put(text); shownWork = text; noticeKey = 'class_given'; }, makePicture() {} });
         globalThis.confirm = () => {
-          isLaw('while it asks');
+          checkLaw('while it asks');
           pageRequests.push([...teacherList][0]);
           const isYes = random() < 0.5;
           if (!isYes && window.localStorage.room) noticeKey = 'class_given_kept';
@@ -530,13 +530,13 @@ const PARTS = {
           await wait(random.below(2500));
         }
       };
-      const travels = () => later(isCalm ? 5 : 5 + random.below(900));
-      const answersTo = async (request) => {
+      const travel = () => later(isCalm ? 5 : 5 + random.below(900));
+      const handle = async (request) => {
         if (request.do === 'group') {
           await later(400);
-          return answers({ saw: 1, ran: ['class', 1], runs: [], others: [], changes: [] });
+          return responseOf({ saw: 1, ran: ['class', 1], runs: [], others: [], changes: [] });
         }
-        await travels();
+        await travel();
         const lost = !isCalm && random() < 0.25 ? random.of(['look', 'answer']) : '';
         if (lost) ends.add('lost');
         if (lost === 'look') throw new Broken();
@@ -548,47 +548,47 @@ const PARTS = {
           if (took && teacherList.has(took.key)) {
             teacherList.delete(took.key);
             knownFields.text = took.text;
-            isLaw('the class has forgotten it');
+            checkLaw('the class has forgotten it');
           }
           const [current] = teacherList;
           answer = { groups: [{ name: 'red', members: [] }], driver: '', place: -1, waiting: 0, robots: 0, robot: '', left_s: 0, name: 'Ana', hand: false, ...(current && { given: { key: current, text: current, robot: 'tinibot', lessons: [] } }) };
         }
-        await travels();
+        await travel();
         if (lost) throw new Broken();
-        return answers(answer);
+        return responseOf(answer);
       };
       const box = () => page.byId('class').children[0];
       const actions = {
-        gives: () => {
+        give: () => {
           const text = `W(${(entries += 1)})`;
           givenTexts.push(text);
           teacherList.add(text);
         },
-        joins: () => {
+        join: () => {
           shownWork = '';
           box().children[1].dispatchEvent(new Event('submit', { cancelable: true }));
         },
-        leaves: () => box().children[5].click(),
-        mate: () => { if (document.documentElement.dataset['group']) puts(`M(${(entries += 1)})`); },
-        writes: () => puts(`F(${(entries += 1)})`),
+        leave: () => box().children[5].click(),
+        mate: () => { if (document.documentElement.dataset['group']) put(`M(${(entries += 1)})`); },
+        write: () => put(`F(${(entries += 1)})`),
         full: () => { window.localStorage.room = random.of([0, Infinity]); },
-        reload: () => loads({ sessionStorage: [...window.sessionStorage], localStorage: [...window.localStorage] }),
+        reload: () => load({ sessionStorage: [...window.sessionStorage], localStorage: [...window.localStorage] }),
       };
-      await loads({ sessionStorage: [], localStorage: [] });
+      await load({ sessionStorage: [], localStorage: [] });
       for (let k = isGood ? 4 : 4 + random.below(16); k > 0; k -= 1) {
-        const act = random.of(['gives', ...Object.keys(actions)]);
+        const act = random.of(['give', ...Object.keys(actions)]);
         ends.add(act);
         await actions[act]();
-        isLaw(act);
+        checkLaw(act);
         for (let step = random.of([0, 1, 1, 3, 12]); step > 0; step -= 1) {
           await wait(random.below(300));
-          isLaw(act);
+          checkLaw(act);
         }
       }
       isCalm = true;
       window.localStorage.room = Infinity;
       await wait(3000 + 2000 * givenTexts.length);
-      isLaw('at the end');
+      checkLaw('at the end');
       if (teacherList.size) throw new Error(`${[...teacherList]} are not taken`);
       if (knownFields.text !== screen) throw new Error(`the teacher sees ${knownFields.text}, and it is ${screen}`);
       return { ends: [...ends], seen: [] };
@@ -675,17 +675,17 @@ const PARTS = {
     let isSeen = false; // what runs is what is seen
     let offsetsOf = new Map(); // where what runs stops, by each breakpoint
     let sentBreakpoints = [];
-    const stopsAt = (points) => {
+    const stopAt = (points) => {
       offsetsOf = new Map(points.map(({ point, line }) => [point, isSeen ? (line === 1 ? [0] : []) : offsetsOf.get(point) ?? []]));
     };
-    const setsPoints = (points) => {
-      stopsAt(points);
+    const setPoints = (points) => {
+      stopAt(points);
       pageState.breakpoints.set(points);
     };
-    const types = (text) => { // breakpoints go with their lines
+    const type = (text) => { // breakpoints go with their lines
       pageState.programText.set(text);
       isSeen = false;
-      setsPoints(pageState.breakpoints.value.map((item) => ({ ...item, line: item.line + 1 })));
+      setPoints(pageState.breakpoints.value.map((item) => ({ ...item, line: item.line + 1 })));
     };
     const checkPoints = () => {
       const expected = [...new Set([...offsetsOf.values()].flat())];
@@ -697,7 +697,7 @@ const PARTS = {
         if (request.do === 'power_on') {
           isSeen = true;
           offsetsOf = new Map();
-          stopsAt(pageState.breakpoints.value);
+          stopAt(pageState.breakpoints.value);
         }
         if ('breakpoints' in request) sentBreakpoints = request.breakpoints;
         notes.push(['python', { ...request }]);
@@ -716,8 +716,8 @@ const PARTS = {
     return async (random, isGood) => {
       notes.splice(0);
       robot = virtualRobot(random, isGood);
-      types('F(9)');
-      setsPoints(random.of([[], [{ line: 1, column: 1, point: {} }]]));
+      type('F(9)');
+      setPoints(random.of([[], [{ line: 1, column: 1, point: {} }]]));
       page.byId('run').click();
       if (!isGood && robot.outcome === 'runs' && random() < 0.2) page.byId('run').click(); // twice
       for (let k = random.below(6); k > 0; k -= 1) {
@@ -725,12 +725,12 @@ const PARTS = {
         marked.length = 0;
         notes.push(observe());
         if (random() < 0.3) {
-          setsPoints(random.of([[], [{ line: 1, column: 1, point: {} }], [...pageState.breakpoints.value, { line: 1, column: 1, point: {} }]]));
+          setPoints(random.of([[], [{ line: 1, column: 1, point: {} }], [...pageState.breakpoints.value, { line: 1, column: 1, point: {} }]]));
           await wait(50);
           checkPoints();
         }
         if (random() < 0.2) {
-          types(`F(${random.below(9)})`);
+          type(`F(${random.below(9)})`);
           await wait(200);
           checkPoints();
           if (pageState.virtualRun.value.ranges.length) throw new Error('it runs in another text');
@@ -801,64 +801,64 @@ const PARTS = {
       [context, hasDevice] = [null, true];
       const wanted = []; // when each begins and ends, and how high it is
       let isMuted = false, last_ms = 0, open_ms = -1; // until when it is open without a tone
-      const opens = () => {
+      const open = () => {
         if (isMuted || !activation.hasBeenActive || (!context && !hasDevice)) return false;
         open_ms = 0;
         return true;
       };
-      const beeps = (hertz, duration_ms) => {
+      const beep = (hertz, duration_ms) => {
         const begins_ms = Math.max(now(), last_ms);
-        if (!opens() || begins_ms - now() > LATE_MS) return;
+        if (!open() || begins_ms - now() > LATE_MS) return;
         last_ms = begins_ms + duration_ms;
         wanted.push([begins_ms, begins_ms + Math.max(LEAST_MS, duration_ms), Math.max(20, Math.min(16_000, hertz))]);
       };
-      const silences = () => {
+      const silence = () => {
         for (const item of wanted) item[1] = Math.min(item[1], now());
         last_ms = 0;
       };
       const actions = {
-        begins() {
-          silences();
-          if (opens()) open_ms = now() + OPEN_MS;
+        begin() {
+          silence();
+          if (open()) open_ms = now() + OPEN_MS;
           sounds.begin();
         },
-        beeps() {
+        beep() {
           const hertz = random.of([5, 440, 550, 20_000]), duration_ms = random.of([1, 50, 300, 2000, 20_000]);
-          beeps(hertz, duration_ms);
+          beep(hertz, duration_ms);
           sounds.beep(hertz, duration_ms / 1000);
         },
         crash() {
-          if (opens()) wanted.push([now(), now() + CRASH_MS, 0]);
+          if (open()) wanted.push([now(), now() + CRASH_MS, 0]);
           sounds.crash();
         },
-        cheers() {
-          silences();
-          for (const hertz of [523, 659, 784, 1047]) beeps(hertz, 120);
+        cheer() {
+          silence();
+          for (const hertz of [523, 659, 784, 1047]) beep(hertz, 120);
           sounds.cheer();
         },
         silence() {
-          silences();
+          silence();
           sounds.silence();
         },
         mute() {
           isMuted = random() < 0.6;
-          if (isMuted) silences();
+          if (isMuted) silence();
           sounds.setMuted(isMuted);
         },
-        touches: () => { activation.hasBeenActive = random() < 0.8; },
+        touch: () => { activation.hasBeenActive = random() < 0.8; },
         device: () => { hasDevice = random() < 0.7; },
-        waits: () => {},
+        wait: () => {},
       };
       const ends = new Set();
       for (let k = 4 + random.below(16); k > 0; k -= 1) {
-        const act = random.of(['beeps', 'beeps', ...Object.keys(actions)]);
+        const act = random.of(['beep', 'beep', ...Object.keys(actions)]);
         ends.add(act);
         actions[act]();
         const check = () => {
           const beeps = heard.map((item) => [item.begins_ms, item.ends_ms, item.tone.frequency.value ?? 0]);
-          if (JSON.stringify(beeps) !== JSON.stringify(wanted)) throw new Error(`after it ${act} ${JSON.stringify(beeps)} is heard in place of ${JSON.stringify(wanted)}`);
+          if (JSON.stringify(beeps) !== JSON.stringify(wanted)) throw new Error(`after ${act} ${JSON.stringify(beeps)} is heard in place of ${JSON.stringify(wanted)}`);
           const until_ms = Math.max(open_ms, ...wanted.map(([, end_ms]) => end_ms + OPEN_MS));
-          if (context && context.state !== (until_ms > now() ? 'running' : 'suspended')) throw new Error(`after it ${act} the sound is ${context.state} until ${until_ms} at ${now()}`);
+          if (context && context.state !== (until_ms > now() ? 'running' : 'suspended')) throw new Error(`after ${act} the sound is ${context.state} until ${until_ms} at ${now()}`);
         };
         check();
         await wait(random.of([0, 20, 250, 2990, 3010, 9000]) + random.below(9));
@@ -907,25 +907,25 @@ const PARTS = {
   async flashing() {
     let notes = [];
     let fails = () => '';
-    const failed = async (stage, value) => {
+    const attempt = async (stage, value) => {
       await later(10);
       if (fails(stage)) throw new Broken('Error');
       return value;
     };
     const page = freshPage({
       hasSerial: true,
-      choosePort: () => failed('port', 'port'),
+      choosePort: () => attempt('port', 'port'),
       fetchFirmwareList: async () => [{ board: 'uno' }],
       loadFirmware: (which, board) => {
         notes.push([which.name ?? structuredClone(which), board, page.byId('flash_progress').value]);
-        return failed('firmware', 'data');
+        return attempt('firmware', 'data');
       },
       flashBoard: async (port, board, data, progress, signal) => {
         progress(0.5);
         notes.push(page.byId('flash_progress').value);
         await later(50);
         if (signal.aborted) throw new Broken('AbortError');
-        return failed('flash');
+        return attempt('flash');
       },
     });
     await loadTexts(page);
@@ -933,7 +933,7 @@ const PARTS = {
     const { Flashing } = await page.load('robot/flashing.js');
     const speech = { say: (key) => notes.push(key), sayFailure: (failure) => notes.push(failure.reason) };
     let isFree = true;
-    new Flashing({ speech, getChosenPort: () => null, isFree: () => isFree, setBusy: (isBusy) => { isFree = !isBusy; }, connect: () => failed('meet') });
+    new Flashing({ speech, getChosenPort: () => null, isFree: () => isFree, setBusy: (isBusy) => { isFree = !isBusy; }, connect: () => attempt('meet') });
     return async (random, isGood) => {
       notes = [];
       const end = isGood ? 'good' : random.of(['good', 'port', 'firmware', 'flash', 'meet', 'cancel']);
@@ -966,7 +966,7 @@ const PARTS = {
       const fetchCounts = new Map(), losses = []; // what is fetched, how often; what was lost, and when
       const posted = new Map(), reached = new Map(), requestsById = new Map();
       let wrong = '', ready = '';
-      const fails = (message) => { wrong ||= message; };
+      const fail = (message) => { wrong ||= message; };
       const first = random() < 0.8 ? '' : random.of(['tiniscript.zip', 'messages.en.json', 'messages.es.json', 'pyodide']);
       let loses = (name) => name === first;
       const page = freshPage({
@@ -975,17 +975,17 @@ const PARTS = {
           return {
             FS: { mkdirTree() {} },
             unpackArchive(data) {
-              if (data.name.startsWith('not ')) fails(`${data.name} is unpacked`);
+              if (data.name.startsWith('not ')) fail(`${data.name} is unpacked`);
               loadedFiles.add(data.name);
             },
             runPython: () => (text) => {
               const { do: what, language, id } = JSON.parse(text);
               if (what === 'learn') return learntLanguages.add(language);
               const before = requestsById.get(id);
-              if (NEEDS[what] && !loadedFiles.has(NEEDS[what])) fails(`${what} comes before ${NEEDS[what]}`);
+              if (NEEDS[what] && !loadedFiles.has(NEEDS[what])) fail(`${what} comes before ${NEEDS[what]}`);
               const isLearnt = learntLanguages.has(before.language);
-              if (what.startsWith('lesson') && !isLearnt && before.isUnder && !losses.some(({ name, at }) => name === before.messages && at >= before.at)) fails(`${what} does not wait for its language`);
-              if (language !== (isLearnt ? before.language : SOURCE)) fails(`${what} is asked in ${language}, and not in ${before.language}`);
+              if (what.startsWith('lesson') && !isLearnt && before.isUnder && !losses.some(({ name, at }) => name === before.messages && at >= before.at)) fail(`${what} does not wait for its language`);
+              if (language !== (isLearnt ? before.language : SOURCE)) fail(`${what} is asked in ${language}, and not in ${before.language}`);
               reached.set(id, true);
               return JSON.stringify({ id });
             },
@@ -998,19 +998,19 @@ const PARTS = {
           if (!losses.length || ready === '') ready = error ? 'failed' : 'ready';
           return;
         }
-        if (posted.has(id)) fails('it is answered twice');
+        if (posted.has(id)) fail('it is answered twice');
         posted.set(id, error ? 'error' : 'answer');
         const { what, language, at, messages } = requestsById.get(id);
         const needs = what === 'learn' ? messages : NEEDS[what];
-        if (error && !losses.some((item) => item.name === needs && item.at >= at) && ready !== 'failed') fails(`${what} fails: ${error}`);
-        if (!error && what !== 'learn' && (!reached.has(id) || JSON.parse(answer).id !== id)) fails(`${what} is answered, and was not done`);
-        if (!error && what === 'learn' && !learntLanguages.has(language)) fails(`${language} is learnt, and is not there`);
+        if (error && !losses.some((item) => item.name === needs && item.at >= at) && ready !== 'failed') fail(`${what} fails: ${error}`);
+        if (!error && what !== 'learn' && (!reached.has(id) || JSON.parse(answer).id !== id)) fail(`${what} is answered, and was not done`);
+        if (!error && what === 'learn' && !learntLanguages.has(language)) fail(`${language} is learnt, and is not there`);
       };
       globalThis.name = random.of(['', 'en', 'es']);
       replaceFetch(async (address) => {
         const name = String(address).replace('./', '');
-        if (name.endsWith('.zip') && (loadedFiles.has(name) || fetchCounts.get(name))) fails(`${name} is fetched again`);
-        if (learntLanguages.has(name.split('.')[1])) fails(`${name} is fetched again`);
+        if (name.endsWith('.zip') && (loadedFiles.has(name) || fetchCounts.get(name))) fail(`${name} is fetched again`);
+        if (learntLanguages.has(name.split('.')[1])) fail(`${name} is fetched again`);
         fetchCounts.set(name, (fetchCounts.get(name) ?? 0) + 1);
         const isLost = loses(name);
         await later(ready ? 5 + random.below(random.of([20, 400])) : name.endsWith('.zip') ? 10 : 20);
@@ -1083,7 +1083,7 @@ const PARTS = {
     const NOTICE_MS = 3000, TIMEOUT_MS = 20_000;
     return async (random) => {
       const began_ms = now(), reports = [];
-      const tells = (what) => reports.push([Math.round(now() - began_ms), what]);
+      const tell = (what) => reports.push([Math.round(now() - began_ms), what]);
       const cancelling = new AbortController();
       const gap = () => 7 * (random.of([1, 1, 70, 70, 410, 440, 1000, 2700, 3000]) + random.below(12)); // neither limit at the same time
       const outcome = random.of(['whole', 'whole', 'broken', 'broken', 'refused', 'lost']);
@@ -1107,7 +1107,7 @@ const PARTS = {
           if (!isOver) outcome === 'broken' ? pieces.error(new Broken()) : pieces.close();
         });
       });
-      const options = { cancelSignal: cancelling.signal, onWait: () => tells('waits'), onProgress: () => tells('comes'), onFail: () => tells('fails') };
+      const options = { cancelSignal: cancelling.signal, onWait: () => tell('waits'), onProgress: () => tell('comes'), onFail: () => tell('fails') };
       let receivedText = '';
       watchedFetch('x', options, fetcher).then((response) => response.text()).then((all) => { receivedText = all; }, () => { receivedText = 'nothing'; });
       await wait(300_000);
@@ -1115,7 +1115,7 @@ const PARTS = {
       const expected = [];
       let last_ms = 0, at_ms = answer_ms, end = outcome, hasWaited = false;
       const steps = ['lost', 'refused'].includes(outcome) ? [] : [...gaps.map((ms) => ['comes', ms]), [outcome, end_ms]];
-      const reaches = (next_ms) => { // whether it gets so far
+      const reach = (next_ms) => { // whether it gets so far
         const limit_ms = Math.min(cancel_ms, last_ms + TIMEOUT_MS);
         if (!hasWaited && last_ms + NOTICE_MS < Math.min(next_ms, limit_ms)) {
           expected.push([last_ms + NOTICE_MS, 'waits']);
@@ -1126,8 +1126,8 @@ const PARTS = {
         at_ms = limit_ms;
         return false;
       };
-      if (reaches(at_ms)) for (const [what, ms] of steps) {
-        if (!reaches(at_ms + ms)) break;
+      if (reach(at_ms)) for (const [what, ms] of steps) {
+        if (!reach(at_ms + ms)) break;
         at_ms += ms;
         if (what === 'comes') expected.push([last_ms = at_ms, 'comes']);
       }
@@ -1210,30 +1210,30 @@ const PARTS = {
       const isKept = run.origin.of === 'virtual' && !run.fileText; // what comes is what its file has
       const marks = [], rows = [];
       let now_ms = random.below(100), bumps = 0, parting = null, begun = [], end_ms = run.end_ms;
-      const marked = (at_ms, kind) => {
+      const mark = (at_ms, kind) => {
         marks.push({ at_ms, kind });
         if (marks.length > MOST_MARKS) marks.splice(0, MOST_MARKS / 2);
       };
       const add = (count) => {
         now_ms += 1 + random.below(90);
         const events = Array.from({ length: count }, () => [now_ms, random.of(['SHOW 1', 'MOTORS 1 2', 'READ DISTANCE 5', 'FAULT 1', 'BEEP 97 100']), 0]);
-        for (const [at_ms, event] of events) if (!event.startsWith('READ')) marked(at_ms, ['SHOW', 'FAULT', 'BEEP'].find((word) => event.startsWith(word)) ?? '');
+        for (const [at_ms, event] of events) if (!event.startsWith('READ')) mark(at_ms, ['SHOW', 'FAULT', 'BEEP'].find((word) => event.startsWith(word)) ?? '');
         if (random() < 0.1) {
           bumps += 1;
-          marked(now_ms, 'BUMP');
+          mark(now_ms, 'BUMP');
         }
-        const at = [0, ...random() < 0.7 ? [random.of([2, 4, 4, 6, 8, 8])] : []], begins = at.map((item) => inWhen[item]).filter(Boolean);
-        if (begins.some((item) => !begun.includes(item))) marked(now_ms, 'WHEN');
-        begun = begins;
+        const at = [0, ...random() < 0.7 ? [random.of([2, 4, 4, 6, 8, 8])] : []], active = at.map((item) => inWhen[item]).filter(Boolean);
+        if (active.some((item) => !begun.includes(item))) mark(now_ms, 'WHEN');
+        begun = active;
         const more = random() < 0.3 ? [[now_ms, random.of(['KEYS 0 0 0', 'KEYS 1 0 0', 'KEYS 0 50 -5', `READ DISTANCE ${random.below(9)}`])]] : [];
         if (isKept) {
-          for (const [at_ms, row] of more) if (row.startsWith('KEYS') && row !== 'KEYS 0 0 0') marked(at_ms, 'KEYS');
+          for (const [at_ms, row] of more) if (row.startsWith('KEYS') && row !== 'KEYS 0 0 0') mark(at_ms, 'KEYS');
           rows.push(...more);
         }
         const parts = random() < 0.05 ? { at_ms: random() < 0.5 ? now_ms : null } : null;
         if (parts && !parting) {
           parting = parts;
-          if (parts.at_ms !== null) marked(parts.at_ms, 'PART');
+          if (parts.at_ms !== null) mark(parts.at_ms, 'PART');
         }
         const is_full = random() < 0.1;
         if (!is_full && run.origin.of === 'virtual') end_ms = now_ms;
@@ -1278,14 +1278,14 @@ const PARTS = {
         return { verdict: isLast ? own : '', seed: 1, worlds: 2, said: ['said'], block_said: ['said'], spoken: {}, run: isLast && own === 'failed' ? { seed: 1, until_ms: check } : null };
       },
     };
-    let stops = () => {};
+    let endRun = () => {};
     const driving = {
       showLesson: () => later(delay()),
       leaveLesson() {},
-      stop: () => stops(),
+      stop: () => endRun(),
       play({ until_ms: check }) {
         if (page.byId('lesson_end').hidden || check !== checks) wrong ||= 'the run of a check that is over begins';
-        return new Promise((resolve) => { stops = resolve; setTimeout(resolve, 200); });
+        return new Promise((resolve) => { endRun = resolve; setTimeout(resolve, 200); });
       },
     };
     const work = { text: '', robot: '', name: '', lesson: '', own: null };
@@ -1299,27 +1299,27 @@ const PARTS = {
     });
     let hasGroupText = false;
     const openLesson = () => LESSONS[page.byId('lesson_page').dataset.lesson - 1];
-    const opens = ({ text, robot, name, lesson = '' }) => {
+    const open = ({ text, robot, name, lesson = '' }) => {
       pageState.robotName.set(robot);
       Object.assign(work, { name, lesson, own: lesson ? work.own : null });
       pageState.programText.set(text);
     };
     const inEditor = () => JSON.stringify([work.text, work.robot, work.name]);
     let ownProgram = ''; // the own program, which has stepped back
-    const given = (program) => {
+    const receive = (program) => {
       if (pageState.groupName.value) wrong ||= 'a lesson takes the program of a group';
       if (program.lesson && program.lesson !== openLesson().name) wrong ||= `the program of ${program.lesson} comes beside ${openLesson().name}`;
       if (program.lesson) ownProgram ||= inEditor();
-      opens(program);
+      open(program);
       if (program.lesson) return;
       if (inEditor() !== ownProgram) wrong ||= `${inEditor()} comes back in place of ${ownProgram}`;
       ownProgram = '';
     };
-    const exchanges = (program) => {
+    const exchange = (program) => {
       if (program.lesson && !program.text && (!isRightOn(work.robot, work.text) || isRightOn(program.robot, work.text))) wrong ||= `${inEditor()} goes from a ${program.robot}`;
-      given(program);
+      receive(program);
     };
-    const lessons = new Lessons({ python, simulatorPanel: driving, putProgram: (program) => (pageState.groupName.value ? opens(program) : given(program)), exchangeProgram: exchanges, work });
+    const lessons = new Lessons({ python, simulatorPanel: driving, putProgram: (program) => (pageState.groupName.value ? open(program) : receive(program)), exchangeProgram: exchange, work });
     page.byId('lessons').hidden = false;
     page.byId('side_lessons').click();
     await wait(500);
@@ -1343,60 +1343,60 @@ const PARTS = {
       if (isGroup && hasGroupText && work.lesson) throw new Error(`a group's program is that of ${work.lesson}`);
       if (!isGroup && work.lesson && work.text && kept()[work.lesson] !== work.text) throw new Error(`of ${work.lesson} is kept ${kept()[work.lesson]}, and not ${work.text}`);
     };
-    const rests = async () => {
+    const rest = async () => {
       await wait(3000);
       if (chosen && String(1 + LESSONS.indexOf(openLesson())) !== chosen) throw new Error(`${openLesson().name} is seen, and ${chosen} was chosen`);
     };
     const written = (random) => `F(${random.below(1000)}) ${random.of(['', '// tinibot', '// liner'])}`; // and where it is right
-    const goesTo = (side) => {
+    const goTo = (side) => {
       page.byId('lessons').hidden = side !== 'side_lessons';
       pageState.sideId.set(side);
       page.byId(side).click();
     };
-    const takes = { // lessons, in any order
-      chooses(random) {
+    const lessonActions = { // lessons, in any order
+      choose(random) {
         chosen = page.byId('lesson').value = String(1 + random.below(LESSONS.length));
         page.byId('lesson').dispatchEvent(new Event('change'));
       },
-      uses: () => page.byId('lesson_step').children[0].children[1].click(),
-      writes(random) { // a lesson's program, which is then that of the lesson that is seen
+      use: () => page.byId('lesson_step').children[0].children[1].click(),
+      write(random) { // a lesson's program, which is then that of the lesson that is seen
         const { lesson } = work, wanted = lesson && (pageState.groupName.value ? '' : pageState.sideId.value === 'side_lessons' ? openLesson().name : lesson);
         pageState.programText.set(written(random));
         if (work.lesson !== wanted) throw new Error(`what was written at ${wanted || 'no lesson'} is of ${work.lesson}`);
       },
-      empties: () => pageState.programText.set(''),
+      empty: () => pageState.programText.set(''),
       robot: (random) => pageState.robotName.set(random.of(['tinibot', 'liner'])),
-      goes: (random) => goesTo(random.of(['side_lessons', 'side_virtual'])),
-      checks: () => actions.check(),
-      leaves: () => lessons.leave(),
-      joins(random) { // its program is nobody's own, and no lesson's
+      go: (random) => goTo(random.of(['side_lessons', 'side_virtual'])),
+      check: () => actions.check(),
+      leave: () => lessons.leave(),
+      join(random) { // its program is nobody's own, and no lesson's
         if (pageState.groupName.value) return;
         keptBefore = kept();
         hasGroupText = false;
         pageState.groupName.set('red');
         if (random() < 0.5) pageState.programText.set(written(random)); // else it is on its way
       },
-      async wavers(random) { // before the lesson has said whether the program is for its robot
-        goesTo('side_lessons');
-        takes.erases();
-        takes[random.of(['opens', 'writes'])](random);
-        takes.chooses(random);
+      async waver(random) { // before the lesson has said whether the program is for its robot
+        goTo('side_lessons');
+        lessonActions.erase();
+        lessonActions[random.of(['open', 'write'])](random);
+        lessonActions.choose(random);
         await wait(random.below(500));
-        takes[random.of(['chooses', 'writes', 'robot', 'joins'])](random);
+        lessonActions[random.of(['choose', 'write', 'robot', 'join'])](random);
       },
-      erases() { // whoever else uses this device
+      erase() { // whoever else uses this device
         if (pageState.groupName.value) return;
         window.localStorage.removeItem('tiniscript.lesson_programs');
         pageState.programText.set(work.text);
       },
-      speaks() {
+      changeLanguage() {
         chosen = '';
         pageState.language.set('en');
       },
-      quits: () => pageState.groupName.set(''),
-      opens(random) {
+      quit: () => pageState.groupName.set(''),
+      open(random) {
         ownProgram = '';
-        opens({ text: written(random), robot: random.of(['tinibot', 'liner']), name: `${random.below(9)}.ts` });
+        open({ text: written(random), robot: random.of(['tinibot', 'liner']), name: `${random.below(9)}.ts` });
       },
     };
     return async (random, isGood) => {
@@ -1423,13 +1423,13 @@ const PARTS = {
       seen.push(readVerdict());
       delay = () => 5 + random.below(300);
       for (let k = 10 + random.below(40); k > 0; k -= 1) {
-        await takes[random.of(['chooses', 'writes', ...Object.keys(takes)])](random);
+        await lessonActions[random.of(['choose', 'write', ...Object.keys(lessonActions)])](random);
         checkKept();
-        await (random() < 0.15 ? rests() : wait(random.below(random.of([50, 100, 1000]))));
+        await (random() < 0.15 ? rest() : wait(random.below(random.of([50, 100, 1000]))));
         checkKept();
       }
-      await rests();
-      takes.quits();
+      await rest();
+      lessonActions.quit();
       lessons.leave();
       if (ownProgram || work.lesson || work.own) throw new Error(`after all lessons there is ${work.lesson} ${inEditor()}, and the own program is ${ownProgram}`);
       return { ends: [end], seen };
@@ -1479,7 +1479,7 @@ const PARTS = {
         this.began_ms = now();
         workers.push(this);
       }
-      says(data) {
+      say(data) {
         this.hasSpoken = true;
         this.dispatchEvent(Object.assign(new Event('message'), { data }));
       }
@@ -1491,85 +1491,85 @@ const PARTS = {
     return async (random, isGood) => {
       workers.length = 0;
       const reports = [], expected = [];
-      const listens = () => ({ onWait: () => reports.push('waits'), onFail: () => reports.push('fails'), onBegin: () => reports.push('begins') });
+      const makeListeners = () => ({ onWait: () => reports.push('waits'), onFail: () => reports.push('fails'), onBegin: () => reports.push('begins') });
       const ends = new Set();
-      let isReady = false, isLate = false, isThere = true, isAnswering = false, asks = 0;
+      let isReady = false, isLate = false, isThere = true, isAnswering = false, askCount = 0;
       const openNumbers = new Set(), endings = [], expectedEndings = [];
       const python = new Python('en');
-      python.listen(listens());
+      python.listen(makeListeners());
       python.ready.then(() => { isAnswering = true; });
       const newest = () => workers.at(-1);
-      const rejects = () => {
+      const rejectAll = () => {
         for (const number of openNumbers) expectedEndings.push([number, 'rejected']);
         openNumbers.clear();
         newest().asked = [];
       };
-      const fails = (end) => {
+      const fail = (end) => {
         ends.add(end);
-        rejects();
+        rejectAll();
         if (isReady) return;
         [isThere, isLate] = [false, false];
         expected.push('fails');
       };
       const actions = {
-        asks() {
-          const number = (asks += 1);
+        ask() {
+          const number = (askCount += 1);
           if (isThere) openNumbers.add(number);
           else expectedEndings.push([number, 'rejected']);
           python.ask({ number }).then((answer) => endings.push([number, answer]), () => endings.push([number, 'rejected']));
         },
-        answers() {
+        answer() {
           const [request] = newest().asked.splice(0, 1);
           if (!isThere || !request) return;
           openNumbers.delete(request.number);
           const isError = random() < 0.3;
           expectedEndings.push([request.number, isError ? 'rejected' : request.number]);
-          newest().says(isError ? { id: request.id, error: 'no' } : { id: request.id, answer: JSON.stringify(request.number) });
+          newest().say(isError ? { id: request.id, error: 'no' } : { id: request.id, answer: JSON.stringify(request.number) });
         },
-        begins: () => isThere && newest().says({ begun: true }),
-        waits() {
+        begin: () => isThere && newest().say({ begun: true }),
+        wait() {
           if (!isThere) return;
           expected.push('waits');
           isLate = !isReady; // what a lesson needs may be late when it is there
-          newest().says({ waits: true });
+          newest().say({ waits: true });
         },
-        readies() {
+        becomeReady() {
           if (!isThere) return;
           [isReady, isLate] = [true, false];
-          newest().says({ id: 0 });
+          newest().say({ id: 0 });
         },
         'not fetched'() {
           if (!isThere || isReady) return;
-          fails('not fetched');
-          newest().says({ id: 0, error: 'not fetched' });
+          fail('not fetched');
+          newest().say({ id: 0, error: 'not fetched' });
         },
         error() {
           if (!isThere) return;
-          fails('error');
+          fail('error');
           newest().dispatchEvent(Object.assign(new Event('error'), { message: 'broken' }));
         },
-        tries() {
+        tryAgain() {
           if (!isThere) expected.push('begins');
           isThere = true;
           python.tryAgain('en');
         },
-        listens() {
+        listen() {
           if (!isThere) expected.push('fails');
           else if (isLate) expected.push('waits');
-          python.listen(listens());
+          python.listen(makeListeners());
         },
       };
-      const goesOn = async (ms) => { // nobody waits for a worker that says nothing
-        for (const [limit_ms, callback] of [[NOTICE_MS, () => { isLate = true; expected.push('waits'); }], [TIMEOUT_MS, () => fails('silent')]]) {
+      const goOn = async (ms) => { // nobody waits for a worker that says nothing
+        for (const [limit_ms, callback] of [[NOTICE_MS, () => { isLate = true; expected.push('waits'); }], [TIMEOUT_MS, () => fail('silent')]]) {
           const worker = newest(), left_ms = worker.began_ms + limit_ms - now();
           if (isThere && !worker.hasSpoken && left_ms > 0 && left_ms <= ms) callback();
         }
         await wait(ms);
       };
       for (let k = 6 + random.below(20); k > 0; k -= 1) {
-        const act = random.of(['asks', 'asks', 'answers', 'waits', 'tries', 'tries', 'listens', random.of(isGood ? ['begins', 'readies'] : Object.keys(actions))]);
+        const act = random.of(['ask', 'ask', 'answer', 'wait', 'tryAgain', 'tryAgain', 'listen', random.of(isGood ? ['begin', 'becomeReady'] : Object.keys(actions))]);
         actions[act]();
-        await goesOn(random.of([0, 10, 2000, 19_000, 25_000]));
+        await goOn(random.of([0, 10, 2000, 19_000, 25_000]));
         const assertSame = (actual, right, label) => { if (JSON.stringify(actual) !== JSON.stringify(right)) throw new Error(`after ${act} ${label}: ${JSON.stringify(actual)} in place of ${JSON.stringify(right)}`); };
         assertSame(reports, expected, 'it is told');
         assertSame(endings, expectedEndings, 'asks end');
@@ -1593,7 +1593,7 @@ const PARTS = {
       if (chanceNow() < 0.2) throw new Broken();
       if (chanceNow() < 0.2) return { ok: false, status: 413 };
       takenCount += 1;
-      return answers({});
+      return responseOf({});
     });
     return async (random) => {
       chanceNow = random;
@@ -1645,7 +1645,7 @@ const PARTS = {
     const [status, chips, giveBack, anew] = bar.children;
     const [large, giving, settings, code] = ['big_pupil', 'class_giving', 'class_window', 'big_code'].map((id) => document.body.children.find((item) => item.id === id));
     const [robotList, lines] = [settings.children[1].children[1], settings.children[1].children];
-    const [port, lends] = [lines[2].children[0].children.at(-1), lines[2].children[1]], [minutes, places] = [3, 4].map((k) => lines[k].children[0].children.at(-1));
+    const [port, lendButton] = [lines[2].children[0].children.at(-1), lines[2].children[1]], [minutes, places] = [3, 4].map((k) => lines[k].children[0].children.at(-1));
     const within = (part, className) => part.children.find((item) => item.className?.split(' ').includes(className));
     const codeSeen = () => Number(code.querySelectorAll('strong').at(-1).textContent);
     let numbers = 0;
@@ -1684,22 +1684,22 @@ const PARTS = {
           lost ||= request.do === 'class_text';
           throw new Broken();
         }
-        if (request.do === 'ports') return answers({ ports: [{ port: 'p1', name: '' }, { port: 'p2', name: 'Bo' }] });
-        if (request.do === 'class_run') return answers({ run: isLate() ? random.of(['', null, null]) : 'its file' });
+        if (request.do === 'ports') return responseOf({ ports: [{ port: 'p1', name: '' }, { port: 'p2', name: 'Bo' }] });
+        if (request.do === 'class_run') return responseOf({ run: isLate() ? random.of(['', null, null]) : 'its file' });
         if (request.do === 'class_text') {
           const [, found] = [...pupils, ...works, ...shared].find(([name, { number }]) => (request.pupil ? number === request.pupil : name === (request.key ?? request.group))) ?? [];
-          return answers({ text: found?.text ?? '', robot: 'tinibot', version: found?.version ?? 0, history: found?.pupils ? [`made ${found.text}`] : [] });
+          return responseOf({ text: found?.text ?? '', robot: 'tinibot', version: found?.version ?? 0, history: found?.pupils ? [`made ${found.text}`] : [] });
         }
         const keptRows = works.map(([name]) => ({ key: name, name, lessons: [], given: 0, alike: [] }));
-        return answers({
+        return responseOf({
           ...state, over: '', lessons: 2, kept: keptRows, pupils: pupils.map(([name, row]) => ({ name, ...row })),
           groups: shared.map(([key, { pupils: members, version }]) => ({ key, name: key, pupils: members, version })), robots: lent.map(([id, row]) => ({ port: id, ...row })),
         });
       };
       const name = () => random.of(['Ana', 'Luz', 'Teo', 'Eva']);
       const pupil = () => present.get(name());
-      const changes = (fields) => () => { const found = pupil(); if (found) Object.assign(found, fields()); };
-      const presses = (part, isExpected) => {
+      const makeChange = (fields) => () => { const found = pupil(); if (found) Object.assign(found, fields()); };
+      const press = (part, isExpected) => {
         if (!part || part.hidden || part.disabled) return;
         const before = requests.length;
         part.click();
@@ -1708,73 +1708,73 @@ const PARTS = {
       };
       const tileOf = () => random.of([...wall.children, null]);
       const numberOf = (tile) => present.get(tile?.children[0].textContent.split(' · ')[0])?.number;
-      const tilePresses = (className, what) => () => {
+      const makeTilePress = (className, what) => () => {
         const tile = tileOf(), number = numberOf(tile);
-        if (number) presses(within(tile, className), (request) => request.do === what && request.pupil === number);
+        if (number) press(within(tile, className), (request) => request.do === what && request.pupil === number);
       };
       const actions = {
-        comes: () => { const who = name(); if (!present.has(who)) present.set(who, { number: (numbers += 1), text: '', version: 0, silent_s: 0, place: 0, robot: '', is_running: false, left_s: 0, is_right: true, hand: 0, lessons: [], own_robot: { name: '', colour: 0 } }); },
-        writes: changes(() => ({ text: random() < 0.2 ? '' : `W(${numbers})`, version: (numbers += 1) })),
-        waves: changes(() => ({ hand: random.below(3), place: random.below(3), silent_s: random.of([0, 9]), is_right: random() < 0.5 })),
-        drives: changes(() => ({ robot: random.of(['', 'Bo']), is_running: random() < 0.5, left_s: random.below(99) })),
-        learns: changes(() => ({ lessons: ['1 one', '2 two'].slice(random.below(3)), own_robot: { name: random.of(['', 'Zip']), colour: 0 } })),
-        goes: () => { present.delete(name()); },
+        come: () => { const who = name(); if (!present.has(who)) present.set(who, { number: (numbers += 1), text: '', version: 0, silent_s: 0, place: 0, robot: '', is_running: false, left_s: 0, is_right: true, hand: 0, lessons: [], own_robot: { name: '', colour: 0 } }); },
+        write: makeChange(() => ({ text: random() < 0.2 ? '' : `W(${numbers})`, version: (numbers += 1) })),
+        wave: makeChange(() => ({ hand: random.below(3), place: random.below(3), silent_s: random.of([0, 9]), is_right: random() < 0.5 })),
+        drive: makeChange(() => ({ robot: random.of(['', 'Bo']), is_running: random() < 0.5, left_s: random.below(99) })),
+        learn: makeChange(() => ({ lessons: ['1 one', '2 two'].slice(random.below(3)), own_robot: { name: random.of(['', 'Zip']), colour: 0 } })),
+        go: () => { present.delete(name()); },
         kept: () => { const key = `old ${name()}`; if (!keptWorks.delete(key)) keptWorks.set(key, { text: `S(${numbers})`, version: 0 }); },
-        joins: () => {
+        join: () => {
           const found = pupil();
           for (const group of groups.values()) group.pupils = group.pupils.filter((number) => number !== found?.number);
           if (found && random() < 0.7) groups.set(random.of(['red', 'tan']), { text: `G(${numbers})`, version: (numbers += 1), pupils: [found.number] });
         },
         robots: () => robots.set(random.of(['p1', 'p2']), { name: random.of(['', 'Bo']), pupil: random.of(['', 'Ana']), left_s: random.below(99) }),
         rules: () => { room_ = { turn_s: 60 * (1 + random.below(9)), places: 1 + random.below(9), goes_on: random() < 0.5 }; },
-        speaks: () => { languages += 1; pageState.language.set('en'); },
-        looks() {
+        changeLanguage: () => { languages += 1; pageState.language.set('en'); },
+        look() {
           const tile = tileOf();
           if (!tile) return;
           within(tile, 'see').click();
           if (!large.open) throw new Error('nobody is seen large');
           isClosed = false;
         },
-        plays: () => tileOf()?.children.find(({ className }) => className === 'play').click(),
-        closes() {
+        play: () => tileOf()?.children.find(({ className }) => className === 'play').click(),
+        close() {
           large.close();
           isClosed = true;
         },
-        steps: () => large.open && random.of([large.children[0].children[0], large.children[0].children[2]]).click(),
-        gives: () => giving.showModal(),
-        lowers: tilePresses('hand', 'class_hand'),
-        removes: tilePresses('out', 'class_remove'),
-        forgets() {
+        step: () => large.open && random.of([large.children[0].children[0], large.children[0].children[2]]).click(),
+        give: () => giving.showModal(),
+        lower: makeTilePress('hand', 'class_hand'),
+        remove: makeTilePress('out', 'class_remove'),
+        forget() {
           const tile = tileOf(), key = tile?.children[0].textContent;
-          if (keptWorks.has(key)) presses(within(tile, 'out'), (request) => request.do === 'class_forget' && request.key === key);
+          if (keptWorks.has(key)) press(within(tile, 'out'), (request) => request.do === 'class_forget' && request.key === key);
         },
-        ends() { // of who is seen large
+        pressLarge() { // of who is seen large
           const number = present.get(seenLarge()[0])?.number;
           const [what, buttonIndex] = random.of(Object.entries({ class_hand: 4, class_stop: 5, class_next: 6, class_remove: 7 }));
           if (!number) return;
-          presses(large.children[0].children[buttonIndex], (request) => request.do === what && request.pupil === number);
+          press(large.children[0].children[buttonIndex], (request) => request.do === what && request.pupil === number);
           if (what === 'class_remove' && large.open) throw new Error('who is removed is seen large');
           isClosed ||= what === 'class_remove';
         },
-        takes: () => presses(random.of([...robotList.children, null])?.children[2], (request) => request.do === 'class_robot' && !request.gives),
-        lends() {
+        take: () => press(random.of([...robotList.children, null])?.children[2], (request) => request.do === 'class_robot' && !request.gives),
+        lend() {
           port.value = random.of(['', 'p1', 'p2']);
           const before = requests.length;
-          lends.click();
+          lendButton.click();
           if (requests.length - before !== Number(port.value !== '')) throw new Error(`${JSON.stringify(requests.slice(before))} is asked for ${port.value}`);
         },
-        sets() {
+        set() {
           [minutes.value, places.value] = [String(1 + random.below(9)), String(1 + random.below(9))];
           const before = requests.length;
           for (const field of [minutes, places]) field.dispatchEvent(new Event('change'));
           if (`${requests.slice(before).map(({ seconds, places: count }) => seconds / 60 || count)}` !== `${[minutes, places].map(({ value }) => value)}`) throw new Error('what is set is not asked for');
         },
-        waits: () => {},
+        wait: () => {},
       };
       for (let k = 5 + random.below(25); k > 0; k -= 1) {
-        const act = random.of([...Object.keys(actions), 'comes', 'comes', 'comes', 'writes', 'writes', 'looks']);
+        const act = random.of([...Object.keys(actions), 'come', 'come', 'come', 'write', 'write', 'look']);
         actions[act]();
-        if (act === 'looks' && random() < 0.5) actions.ends();
+        if (act === 'look' && random() < 0.5) actions.pressLarge();
         await wait(random.of([20, 1050, random.below(1500)]));
         if (large.open && isClosed) throw new Error('what was closed is seen large again');
         if (codeSeen() < newest) throw new Error('the class of before is seen');
@@ -1794,9 +1794,9 @@ const PARTS = {
         hand: Math.max(...all.map(([, row]) => row.hand)), place: Math.max(...all.map(([, row]) => row.place)), ...(({ robot, is_running, left_s }) => ({ robot, is_running, left_s }))((all.find(([, { robot }]) => robot) ?? all[0])[1]),
       }]);
       const all = [...[...present].filter(([, { number }]) => !members.some(([, { pupils }]) => pupils.includes(number))), ...joined, ...keptWorks].sort(([one], [other]) => one.localeCompare(other));
-      const isSame = (actual, expected, label) => { if (JSON.stringify(actual) !== JSON.stringify(expected)) throw new Error(`${label}: ${JSON.stringify(actual)} in place of ${JSON.stringify(expected)}`); };
+      const assertSame = (actual, expected, label) => { if (JSON.stringify(actual) !== JSON.stringify(expected)) throw new Error(`${label}: ${JSON.stringify(actual)} in place of ${JSON.stringify(expected)}`); };
       const wordsIn = (part) => (typeof part === 'string' ? part : part.textContent + part.children.map(wordsIn).join(''));
-      isSame(wall.children.map((tile) => [tile.children[0].textContent, tile.dataset['state'], tile.children[2].children[1].textContent, !within(tile, 'badge').hidden && wordsIn(within(tile, 'badge')), tile.children[2].children[0].children.filter(({ className }) => className).length, ...['hand', 'play', 'out', 'join'].map((item) => !within(tile, item).hidden)]),
+      assertSame(wall.children.map((tile) => [tile.children[0].textContent, tile.dataset['state'], tile.children[2].children[1].textContent, !within(tile, 'badge').hidden && wordsIn(within(tile, 'badge')), tile.children[2].children[0].children.filter(({ className }) => className).length, ...['hand', 'play', 'out', 'join'].map((item) => !within(tile, item).hidden)]),
         all.map(([name, { own_robot, silent_s, is_right, robot, is_running, left_s, place, lessons = [], hand, isGroup = false }]) => {
           const state = !own_robot ? 'gone' : silent_s ? 'away' : is_right ? 'right' : 'wrong';
           return [[name, own_robot?.name].filter(Boolean).join(' · '), state, state === 'right' ? '✓' : text(`class_is_${state}`), robot ? `${is_running ? '▶ ' : ''}${robot} ${clock(left_s)}` : place ? text('class_place_short', { place }) : false, new Set(lessons).size, Boolean(hand), !isGroup && ['right', 'wrong'].includes(state), !isGroup, isGroup];
@@ -1804,12 +1804,12 @@ const PARTS = {
       const hands = [...present].filter(([, { hand }]) => hand).sort(([, one], [, other]) => one.hand - other.hand).map(([name]) => name).join(', ');
       const expectedText = [text('class_count', { pupils: present.size, robots: robots.size, waiting: [...present.values()].filter(({ place }) => place).length }), hands && text('class_hands', { names: hands })].filter(Boolean).join(' ');
       if (!status.textContent.startsWith(expectedText) || (room_.goes_on && expectedText === status.textContent)) throw new Error(`${status.textContent} in place of ${expectedText}`);
-      isSame([giveBack.hidden, anew.hidden, wall.hidden, minutes.value, places.value], [!keptWorks.size || !present.size, !room_.goes_on, !all.length, String(room_.turn_s / 60), String(room_.places)], 'the bar');
-      isSame([chips.hidden, chips.children.map((chip) => [...chip.children.slice(1).map(wordsIn), chip.className])], [!robots.size, [...robots].map(([id, row]) => [row.name || id, row.pupil ? text('class_held', { name: row.pupil, time: clock(row.left_s) }) : text('class_free'), row.pupil ? 'held' : ''])], 'the robots');
-      isSame(robotList.children.map((row) => wordsIn(row.children[0])), [...robots].map(([id, row]) => [row.name, id].filter(Boolean).join(' · ')), 'the list of robots');
+      assertSame([giveBack.hidden, anew.hidden, wall.hidden, minutes.value, places.value], [!keptWorks.size || !present.size, !room_.goes_on, !all.length, String(room_.turn_s / 60), String(room_.places)], 'the bar');
+      assertSame([chips.hidden, chips.children.map((chip) => [...chip.children.slice(1).map(wordsIn), chip.className])], [!robots.size, [...robots].map(([id, row]) => [row.name || id, row.pupil ? text('class_held', { name: row.pupil, time: clock(row.left_s) }) : text('class_free'), row.pupil ? 'held' : ''])], 'the robots');
+      assertSame(robotList.children.map((row) => wordsIn(row.children[0])), [...robots].map(([id, row]) => [row.name, id].filter(Boolean).join(' · ')), 'the list of robots');
       const tiles = wall.children.map(({ children }) => [children[0].textContent.split(' · ')[0], open.get(children[1].children[0].src), children[1].children[0].src]);
       const expected = all.map(([name, { text: program }]) => [name, program && (languages ? `${program} words ${languages}` : `${program} words`)]);
-      isSame(tiles.map(([name, picture = '']) => [name, picture]), expected, 'the pictures');
+      assertSame(tiles.map(([name, picture = '']) => [name, picture]), expected, 'the pictures');
       if (tiles.some(([, picture, address]) => address && !picture)) throw new Error('a picture that is kept no more is in a tile');
       const shownAddresses = new Set(tiles.map(([, , address]) => address).filter(Boolean));
       if (shownAddresses.size !== open.size) throw new Error(`${open.size} pictures are kept, and ${shownAddresses.size} are seen`);
@@ -1819,8 +1819,8 @@ const PARTS = {
       if (largeView && !ownEntry) throw new Error(`${largeView[0]} is seen large, and is not here`);
       if (ownEntry) {
         const { text: program, robot = '', is_running = false, hand = 0, isGroup, own_robot } = ownEntry[1], [, , , said_, lower, stop, next, remove] = large.children[0].children;
-        if (program) isSame(largeView.slice(1), [program, expected[all.indexOf(ownEntry)][1]], 'what is seen large');
-        isSame([said_.textContent.startsWith(text(is_running ? 'class_runs' : 'class_drives', { robot })), lower.hidden, stop.hidden, next.hidden, remove.hidden, large.children[1].children[2].hidden, large.children[1].children[0].hidden], [Boolean(robot), !hand, !robot, !robot, Boolean(isGroup), !isGroup, !program], `beside ${ownEntry[0]}, who is seen large ${Boolean(own_robot)}`);
+        if (program) assertSame(largeView.slice(1), [program, expected[all.indexOf(ownEntry)][1]], 'what is seen large');
+        assertSame([said_.textContent.startsWith(text(is_running ? 'class_runs' : 'class_drives', { robot })), lower.hidden, stop.hidden, next.hidden, remove.hidden, large.children[1].children[2].hidden, large.children[1].children[0].hidden], [Boolean(robot), !hand, !robot, !robot, Boolean(isGroup), !isGroup, !program], `beside ${ownEntry[0]}, who is seen large ${Boolean(own_robot)}`);
       }
       if (giving.open && !keptWorks.size) throw new Error('there is nothing to give');
       const tile = wall.children.find((item) => numberOf(item) && !within(item, 'play').hidden), before = played;
@@ -1886,7 +1886,7 @@ const PARTS = {
     const EVENTS = [{ event: 'STARTED', program: 'ff', is_program: true }, { event: 'PLACE', program: 'ff', at: 0 }, { event: 'SHOW', value: '1' }, { event: 'DONE' }, { event: 'LOST' }, { event: 'STOPPED', cause: 'MESSAGE' }, { event: 'FAULT', fault: 'STUCK', program: 'ff', at: 0 }];
     const readMessage = () => page.byId('link_said').textContent;
     const observe = () => [readMessage(), page.byId('link_shown').textContent, page.byId('link_name').textContent, page.byId('link_rename_to').value, document.documentElement.dataset['robot'], structuredClone(pageState.robotRun.value)];
-    const noted = (...what) => notes.some((item) => `${item}` === `${what}`);
+    const isNoted = (...what) => notes.some((item) => `${item}` === `${what}`);
     return async (random, isGood) => {
       const before = ways;
       ways = [];
@@ -1899,7 +1899,7 @@ const PARTS = {
       const isMet = () => document.documentElement.dataset['robot'] === 'connected';
       let stop = ''; // pressed, or done, since the newest start
       const actions = {
-        tells() {
+        tell() {
           const event = random.of([...EVENTS, EVENTS[0], EVENTS[0], EVENTS[5], EVENTS[5]]); // a run that starts after a stop, and stops
           notes.length = 0;
           if (event.event === 'STOPPED' && stop === '') page.byId('link_said').textContent = '';
@@ -1908,32 +1908,32 @@ const PARTS = {
           const isOpen = stop === 'pressed';
           if (event.event === 'STARTED' && stop === 'done') stop = '';
           if (event.event !== 'STOPPED') return;
-          if (!noted('pad', 'releaseAll')) throw new Error('what is held is held on after a stop');
+          if (!isNoted('pad', 'releaseAll')) throw new Error('what is held is held on after a stop');
           if (!isOpen && stop === '' && readMessage() !== text('stopped_MESSAGE')) throw new Error(`of a stop after a start it says ${readMessage()}`);
           stop = 'done';
         },
-        stops() {
+        stop() {
           notes.length = 0;
           panel.stop();
           if (!ways[0] || ways[0].isOver) return;
-          if (!noted('stop')) throw new Error('nobody stops');
+          if (!isNoted('stop')) throw new Error('nobody stops');
           stop = 'pressed';
         },
-        uploads() {
+        upload() {
           if (!isMet()) return;
           page.byId('link_upload').click();
           if (page.byId('link_shown').textContent) throw new Error('what the program before has shown is there still');
         },
-        breaks() {
+        breakProgram() {
           if (!isMet()) return;
           pageState.checkResult.set({ ...PROGRAM, image: '', program: '' });
           notes.length = 0;
           page.byId('link_upload').click();
-          if (!noted('stop')) throw new Error('what runs is not what is seen');
+          if (!isNoted('stop')) throw new Error('what runs is not what is seen');
           stop = 'pressed';
           pageState.checkResult.set({ ...PROGRAM, program: 'ff', bytes: 9 });
         },
-        async renames() {
+        async rename() {
           if (!isMet()) return;
           page.byId('link_rename_to').value = 'Bo';
           page.byId('link_rename').click();
@@ -1943,7 +1943,7 @@ const PARTS = {
       };
       for (let k = 1 + random.below(8); k > 0; k -= 1) {
         if (isGood && before.length) before[0].end('unheard'); // once more, and late
-        await actions[random.of(['tells', 'tells', 'tells', ...Object.keys(actions)])]();
+        await actions[random.of(['tell', 'tell', 'tell', ...Object.keys(actions)])]();
         observations.push(observe());
         await wait(random.below(300));
       }
@@ -1954,7 +1954,7 @@ const PARTS = {
       if (end === 'left') ways[0].leave();
       if (end === 'unheard') ways[0].end('unheard');
       if (!isGood) await wait(1000);
-      if (!isGood && wasMet && !noted('recorder', 'end', 'LOST')) throw new Error('the recording of who is gone goes on');
+      if (!isGood && wasMet && !isNoted('recorder', 'end', 'LOST')) throw new Error('the recording of who is gone goes on');
       if (!isGood && wasMet && isUnsaid && !readMessage().includes(text('say_not_confirmed'))) throw new Error(`nobody says that the stop is not confirmed: ${readMessage()}`);
       return { ends: [end], seen: [observations, [...notes]] };
     };
@@ -2064,11 +2064,11 @@ const PARTS = {
       requests.push(request.do);
       await later(delay());
       if (fails()) throw new Broken();
-      if (request.do === 'group_join') return answers(fails() ? { failure: 'group_full' } : { group: request.name });
-      if (request.do === 'group_leave') return answers({});
+      if (request.do === 'group_join') return responseOf(fails() ? { failure: 'group_full' } : { group: request.name });
+      if (request.do === 'group_leave') return responseOf({});
       await later(400);
-      if (isGone()) return answers({ left: true });
-      return answers({ saw: 1, ran: ['class', 1], runs: [{ number: 1, event: 'DONE' }], others: [{ name: 'Luz', mark: 0, at: '', writes: false }], changes: [] });
+      if (isGone()) return responseOf({ left: true });
+      return responseOf({ saw: 1, ran: ['class', 1], runs: [{ number: 1, event: 'DONE' }], others: [{ name: 'Luz', mark: 0, at: '', writes: false }], changes: [] });
     });
     return async (random, isGood) => {
       delay = () => (isGood ? 5 : random.below(200));
@@ -2076,14 +2076,14 @@ const PARTS = {
       isGone = () => !isGood && random() < 0.2;
       let end = '';
       const actions = {
-        joins: () => member.join({ do: 'group_join', name: random.of(['one', 'other']) }),
-        leaves: () => member.isInGroup && member.leave(),
-        ends: () => member.isInGroup && member.endMembership(),
-        edits: () => member.finishEdit(),
+        join: () => member.join({ do: 'group_join', name: random.of(['one', 'other']) }),
+        leave: () => member.isInGroup && member.leave(),
+        end: () => member.isInGroup && member.endMembership(),
+        edit: () => member.finishEdit(),
       };
       const isOutside = () => !member.isInGroup && pageState.groupName.value === '' && !document.documentElement.dataset['group'] && !others.length && !isWitness && undo === null && group === null && !loadText('tiniscript.group', 'sessionStorage');
       for (let k = isGood ? 0 : 2 + random.below(8); k > 0; k -= 1) {
-        end = random.of(['joins', ...Object.keys(actions)]);
+        end = random.of(['join', ...Object.keys(actions)]);
         actions[end]();
         await wait(random.below(900));
       }
@@ -2124,16 +2124,16 @@ const PARTS = {
       dispatch(...specs) {
         const startState = this.state, transaction = startState.update(...specs);
         this.state = transaction.state;
-        this.tells({ startState, transactions: [transaction], changes: transaction.changes, docChanged: transaction.docChanged, focusChanged: false });
+        this.tell({ startState, transactions: [transaction], changes: transaction.changes, docChanged: transaction.docChanged, focusChanged: false });
       },
-      tells(fields) {
+      tell(fields) {
         const update = { view: this, state: this.state, startState: this.state, transactions: [], docChanged: false, ...fields };
-        for (const hears of this.state.facet(EditorView.updateListener)) hears(update);
+        for (const listener of this.state.facet(EditorView.updateListener)) listener(update);
       },
-      looks(hasFocus) {
+      setFocus(hasFocus) {
         const focusChanged = this.hasFocus !== hasFocus;
         this.hasFocus = hasFocus;
-        this.tells({ focusChanged });
+        this.tell({ focusChanged });
       },
     };
     let undo = null;
@@ -2148,7 +2148,7 @@ const PARTS = {
     const linesIn = (text) => (text === '' ? [] : text.split('\n'));
     return async (random, isGood) => {
       const key = `class ${(count += 1)}`;
-      const room = { lines: [], log: [], version: 0, others: [], caret: null, told: 0, refuses: 0, open: { waits: 0, changes: 0 }, isGone: false };
+      const room = { lines: [], log: [], version: 0, others: [], caret: null, told: 0, refusals: 0, open: { waits: 0, changes: 0 }, isGone: false };
       const textOf = (lines) => lines.map(({ text }) => text).join('\n');
       const apply = (lines, { kind, id, after, text }) => {
         const index = lines.findIndex((item) => item.id === id);
@@ -2181,7 +2181,7 @@ const PARTS = {
           if (waits) for (let k = 0; k < 8 && room.log.length === since; k += 1) await later(50);
           if (lost) throw new Broken();
           const runs = Array.from({ length: room.told }, (__, k) => ({ number: k + 1 })).filter(({ number }) => known !== key || number > heard);
-          return answers({ saw: 1, ran: [key, room.told], runs, others: structuredClone(room.others), changes: room.log.slice(since), since: room.log.length, left: room.isGone, slow });
+          return responseOf({ saw: 1, ran: [key, room.told], runs, others: structuredClone(room.others), changes: room.log.slice(since), since: room.log.length, left: room.isGone, slow });
         } finally {
           if (what) room.open[what] -= 1;
         }
@@ -2239,16 +2239,16 @@ const PARTS = {
           const changes = next === text ? [] : [[from, text.length - end, next.slice(from, next.length - end)]];
           versions.set((stepped += 1), { shown: isHeld ? versions.get(version).shown : structuredClone(known.lines), has: structuredClone(known) });
           known.drafts = linesIn(next).map((_, k) => k + 1).filter((k) => (k + stepped) % 4 === 0);
-          return { version: stepped, changes, ids: linesIn(next).map((line, k) => known.lines[k]?.id ?? ''), drafts: known.drafts, pending: structuredClone(known.pending), since: known.since, epoch: key, told: room.refuses, why: 'why', count: 0, kept: { name: `page ${stored ?? ''}${stepped}` } };
+          return { version: stepped, changes, ids: linesIn(next).map((line, k) => known.lines[k]?.id ?? ''), drafts: known.drafts, pending: structuredClone(known.pending), since: known.since, epoch: key, told: room.refusals, why: 'why', count: 0, kept: { name: `page ${stored ?? ''}${stepped}` } };
         },
       };
       const place = { line: 0, writes: false }; // in the blocks
-      const heard = { answers: null, places: [], others: [], refused: 0, left: 0, fails: 0, runs: 0, kept: null };
+      const heard = { isAnswering: null, places: [], others: [], refused: 0, left: 0, failures: 0, runs: 0, kept: null };
       const { doc: { length } } = view.state;
       view.dispatch({ changes: { from: 0, to: length }, annotations: Transaction.addToHistory.of(false) });
       const shared = new SharedEditor(python, editor, {
-        onBug: (error) => { if (isBroken) heard.fails += 1; else wrong = `it fails: ${error?.stack}`; }, onLeft: () => { heard.left += 1; }, onMatesChange: (others) => { heard.others = others; }, onRefusal: () => { heard.refused += 1; }, storePage: (kept) => { heard.kept = kept; },
-        onRequestEnd: (is) => { heard.answers = is; }, onMatesMove: (places) => { heard.places = places; }, onRobotEvent: () => { heard.runs += 1; }, isBusy: () => false,
+        onBug: (error) => { if (isBroken) heard.failures += 1; else wrong = `it fails: ${error?.stack}`; }, onLeft: () => { heard.left += 1; }, onMatesChange: (others) => { heard.others = others; }, onRefusal: () => { heard.refused += 1; }, storePage: (kept) => { heard.kept = kept; },
+        onRequestEnd: (is) => { heard.isAnswering = is; }, onMatesMove: (places) => { heard.places = places; }, onRobotEvent: () => { heard.runs += 1; }, isBusy: () => false,
       });
       let hasBegun = false;
       shared.showProgram({}, null).then(() => { hasBegun = true; });
@@ -2259,29 +2259,29 @@ const PARTS = {
         for (const item of view.state.facet(EditorView.decorations)) if (typeof item !== 'function') item.between(0, view.state.doc.length, (from, _, { spec }) => { if (/cm-beside/.test(spec.class)) found.push(view.state.doc.lineAt(from).number); });
         return found;
       };
-      const writes = (text, at) => view.dispatch({ changes: { from: at, insert: text }, selection: { anchor: at + text.length }, userEvent: 'input.type' });
+      const write = (text, at) => view.dispatch({ changes: { from: at, insert: text }, selection: { anchor: at + text.length }, userEvent: 'input.type' });
       for (let k = random.below(4); k > 0; k -= 1) { // which the group's program replaces
         view.dispatch({ changes: { from: 0, insert: 'w' }, userEvent: random.of(['input.type', 'input.blocks']) });
         await wait(random.below(60));
       }
       for (let k = 0; !hasBegun && k < 100; k += 1) await wait(50);
       const actions = {
-        types() { // a line, sign by sign
+        type() { // a line, sign by sign
           const name = `m${(count += 1)}`;
           ownActs.push(name);
           const { length: end } = view.state.doc;
-          if (end) writes('\n', end);
-          for (const sign of name) writes(sign, view.state.doc.length);
+          if (end) write('\n', end);
+          for (const sign of name) write(sign, view.state.doc.length);
         },
-        adds() { // by a block, or a repair
+        add() { // by a block, or a repair
           const name = `b${(count += 1)}`;
           ownActs.push(name);
           view.dispatch({ changes: { from: 0, insert: view.state.doc.length ? `${name}\n` : name }, userEvent: 'input.blocks' });
         },
-        moves: () => view.dispatch({ selection: { anchor: random.below(view.state.doc.length + 1) } }),
-        blurs: () => view.looks(!view.hasFocus),
-        finishes() { shared.finishEdit(); },
-        async undoes() {
+        move: () => view.dispatch({ selection: { anchor: random.below(view.state.doc.length + 1) } }),
+        blur: () => view.setFocus(!view.hasFocus),
+        finish() { shared.finishEdit(); },
+        async undo() {
           isCalm = isGood;
           undo('undo');
           await wait(2500);
@@ -2294,29 +2294,29 @@ const PARTS = {
           apply(room.lines, room.log.at(-1));
         },
         stand() { room.others = ['Luz', 'Teo'].slice(random.below(3)).map((name, mark) => ({ name, mark, at: random.of(room.lines)?.id ?? '', writes: random() < 0.5 })); },
-        drives() { room.told += 1; },
-        refuses() {
-          room.refuses += 1;
-          actions.adds();
+        drive() { room.told += 1; },
+        refuse() {
+          room.refusals += 1;
+          actions.add();
         },
         blocks: () => shared.chooseLine(place.line = random.below(view.state.doc.lines + 1), place.writes = random() < 0.5),
-        waits: () => {},
+        wait: () => {},
       };
       for (let k = 4 + random.below(14); k > 0; k -= 1) {
-        await actions[random.of(['types', 'types', 'others', ...Object.keys(actions)])]();
+        await actions[random.of(['type', 'type', 'others', ...Object.keys(actions)])]();
         await wait(random.of([0, random.below(100), random.below(1500)]));
         if (wrong) throw new Error(wrong);
       }
       if (random() < 0.3) { // the class is silent for a while
         isLost = () => true;
-        [asked, heard.answers] = [0, true];
+        [asked, heard.isAnswering] = [0, true];
         await wait(7000);
-        if (asked > 50 || heard.answers) throw new Error(`a class that is silent is asked ${asked} times, and answers: ${heard.answers}`);
+        if (asked > 50 || heard.isAnswering) throw new Error(`a class that is silent is asked ${asked} times, and answers: ${heard.isAnswering}`);
       }
       isLost = () => false;
       delay = () => 5;
-      random.of([() => { shared.finishEdit(); }, () => view.looks(!view.hasFocus), () => view.dispatch({ selection: { anchor: 0 } })])();
-      if (view.state.doc.lineAt(view.state.selection.main.head).number === view.state.doc.lines) view.looks(false);
+      random.of([() => { shared.finishEdit(); }, () => view.setFocus(!view.hasFocus), () => view.dispatch({ selection: { anchor: 0 } })])();
+      if (view.state.doc.lineAt(view.state.selection.main.head).number === view.state.doc.lines) view.setFocus(false);
       await wait(9000);
       if (random() < 0.5) shared.chooseLine(place.line = 1, place.writes = true);
       await wait(5000);
@@ -2331,7 +2331,7 @@ const PARTS = {
       const line = place.line || view.state.doc.lineAt(view.state.selection.main.head).number;
       if (room.lines[line - 1]) assertSame(room.caret, { at: room.lines[line - 1].id, writes: place.line ? place.writes : false }, 'where this page is');
       assertSame(marks(), [...heard.places.map(({ line: item }) => item)].sort((a, b) => a - b), 'what is marked in the text');
-      assertSame([heard.answers, heard.runs, heard.left, heard.refused > 0 || !room.refuses], [true, room.told, 0, true], 'what was heard');
+      assertSame([heard.isAnswering, heard.runs, heard.left, heard.refused > 0 || !room.refusals], [true, room.told, 0, true], 'what was heard');
       const before = view.state.doc.toString(), end = random.of(['left', 'gone', 'fails']);
       if (end === 'left') shared.end();
       room.isGone = end === 'gone';
@@ -2339,11 +2339,11 @@ const PARTS = {
       if (isBroken) shared.finishEdit();
       isOver = end === 'left';
       await wait(1500);
-      assertSame([heard.left, heard.fails, undo, heard.places.length, marks().length], [Number(end === 'gone'), Number(end === 'fails'), null, 0, 0], 'once it is over');
+      assertSame([heard.left, heard.failures, undo, heard.places.length, marks().length], [Number(end === 'gone'), Number(end === 'fails'), null, 0, 0], 'once it is over');
       isOver = true;
       actions.others();
       view.dispatch({ changes: { from: 0, insert: 'x' }, userEvent: 'input.type' });
-      actions.moves();
+      actions.move();
       await wait(5000);
       if (afterwards) throw new Error(`${afterwards} times something is asked outside of the group`);
       assertSame(view.state.doc.toString(), `x${before}`, 'the text of who has left');
@@ -2366,7 +2366,7 @@ const PARTS = {
       let version = 0;
       let others = 0; // as of this version
       let isLost = () => random() < 0.3;
-      const asks = async () => {
+      const ask = async () => {
         const [known, number] = heard.position.ran;
         const answer = { saw: version, ran: [key, runs.length], runs: runs.filter((item) => known !== key || item > number).map((item) => ({ number: item })) };
         await later(random.below(200));
@@ -2374,10 +2374,10 @@ const PARTS = {
         others = answer.saw;
         takenRuns.push(...heard.take(answer).map((item) => item.number));
       };
-      const actions = { asks, tells: () => runs.push(runs.length + 1), moves: () => { version += 1; } };
+      const actions = { ask, tell: () => runs.push(runs.length + 1), move: () => { version += 1; } };
       let end = '';
       for (let k = 2 + random.below(30); k > 0; k -= 1) {
-        end = random.of(['asks', ...Object.keys(actions)]);
+        end = random.of(['ask', ...Object.keys(actions)]);
         actions[end]();
         await wait(random.below(100));
       }
@@ -2386,7 +2386,7 @@ const PARTS = {
       isLost = () => false;
       const hasHeard = () => JSON.stringify(heard.position) === JSON.stringify({ saw: version, ran: [key, runs.length] });
       for (let k = 0; k < 2 && !hasHeard(); k += 1) { // else its request is held
-        actions.asks();
+        actions.ask();
         await wait(200);
       }
       if (!hasHeard()) throw new Error(`it has heard ${JSON.stringify(heard.position)} of ${version}, ${runs.length}`);
@@ -2415,12 +2415,12 @@ const PARTS = {
           return { name: 'A', id: '1', robot: 'tinibot', owner: 'free', room: 300, is_running: false, has_remote: true, has_breakpoints: true };
         }
         async ask({ do: action, runs }) {
-          const starts = action === 'start' || action === 'live' || (action === 'upload' && runs);
-          if (starts && !wantedAction) wrong = action;
+          const isStart = action === 'start' || action === 'live' || (action === 'upload' && runs);
+          if (isStart && !wantedAction) wrong = action;
           const before = stops;
           await later(delay()); // what is asked before a stop and comes after it is void
           if (before !== stops) return { failure: 'stopped_elsewhere' };
-          if (starts) {
+          if (isStart) {
             started += 1;
             this.heard.onEvent({ event: 'STARTED', program: 'ff', is_program: action !== 'live' });
           }
@@ -2457,8 +2457,8 @@ const PARTS = {
     const others = {
       send: () => page.byId('link_send').click(),
       points: (random) => pageState.breakpoints.set(random() < 0.5 ? [] : [{ line: 1, column: 1, point: {} }]),
-      halts: () => robot.heard.onEvent({ event: 'HALTED', at: 0, task: 0, program: 'ff', is_program: true }),
-      ends: (random) => robot.heard.onEvent(random.of([{ event: 'DONE' }, { event: 'STOPPED', cause: 'BUTTON' }])),
+      halt: () => robot.heard.onEvent({ event: 'HALTED', at: 0, task: 0, program: 'ff', is_program: true }),
+      end: (random) => robot.heard.onEvent(random.of([{ event: 'DONE' }, { event: 'STOPPED', cause: 'BUTTON' }])),
     };
     const stop = (random) => {
       wantedAction = '';
@@ -2480,7 +2480,7 @@ const PARTS = {
       }
       stop(random);
       await wait(1500);
-      others.ends(random);
+      others.end(random);
       const before = started;
       wantedAction = random.of(['run', 'start', 'line']);
       presses[wantedAction]();
@@ -2513,7 +2513,7 @@ const PARTS = {
       HostRobot: class {
         constructor(heard) {
           this.heard = heard;
-          this.ended = new Promise((_, reject) => { this.rejects = reject; });
+          this.ended = new Promise((_, reject) => { this.reject = reject; });
           this.ended.catch(() => {});
           this.way = this.ended; // one thing after the other
           this.open = new Set(); // when each that has no answer was asked
@@ -2537,7 +2537,7 @@ const PARTS = {
           this.way = (async () => {
             await Promise.race([before === this.ended ? null : before, this.ended]);
             await Promise.race([later(delay()), this.ended]);
-            const answer = stops === this.stops ? this.does(request, wanted) : { failure: 'stopped_elsewhere' };
+            const answer = stops === this.stops ? this.obey(request, wanted) : { failure: 'stopped_elsewhere' };
             await Promise.race([later(delay()), this.ended]);
             return answer;
           })();
@@ -2548,11 +2548,11 @@ const PARTS = {
             this.open.delete(sentRequest);
           }
         }
-        does({ do: action, image, places, runs }, wanted) {
+        obey({ do: action, image, places, runs }, wanted) {
           if (action === 'upload' || action === 'live') this.points = '';
           if (action === 'upload') this.isOurs = true;
           if (['upload', 'live', 'start', 'resume'].includes(action)) this.isHalted = false;
-          if (['upload', 'live', 'start'].includes(action)) this.watches = /FOREVER/.test(image);
+          if (['upload', 'live', 'start'].includes(action)) this.isWatching = /FOREVER/.test(image);
           if (action === 'break') this.points = places.filter((offset) => offset).join();
           if ((action === 'start' || runs) && this.isOurs && info.has_breakpoints && this.points !== wanted) wrong = `it is to halt at '${wanted}', and halts at '${this.points}'`;
           if (action === 'start' || runs) this.tell(this.isOurs ? { event: 'STARTED', ...own } : { event: 'STARTED', program: 'dd', is_program: false });
@@ -2566,7 +2566,7 @@ const PARTS = {
         }
         stop() {
           this.stops += 1;
-          this.watches = this.isBusy = false;
+          this.isWatching = this.isBusy = false;
         }
         tell(event) {
           const isOther = !['SHOW', 'READING'].includes(event.event) && event.program !== this.line; // than a line that is on its way
@@ -2575,10 +2575,10 @@ const PARTS = {
             if (this.isHalted) return;
             this.isHalted = true;
             this.halts += 1;
-          } else if (event.event === 'PLACE') this.watches = false; // it was begun by its button
+          } else if (event.event === 'PLACE') this.isWatching = false; // it was begun by its button
           else if (!['SHOW', 'READING'].includes(event.event)) {
             this.isHalted = false;
-            this.watches &&= event.program === this.line;
+            this.isWatching &&= event.program === this.line;
             this.isBusy = event.event === 'STARTED' && event.program !== this.line;
           }
           this.heard.onEvent(event);
@@ -2586,7 +2586,7 @@ const PARTS = {
         end(error) {
           if (this.isOver) return;
           this.isOver = true;
-          this.rejects(new ConnectionFailure(error));
+          this.reject(new ConnectionFailure(error));
           this.heard.onEnd(new ConnectionFailure(error));
         }
         leave() { this.end('left'); }
@@ -2611,47 +2611,47 @@ const PARTS = {
     pageState.sideId.set('side_real');
     pageState.programText.set('X = DISTANCE;\nSHOW(X)');
     let moved = 0; // lines, by what was written before them
-    const types = (lines) => {
+    const type = (lines) => {
       moved = lines;
       pageState.checkResult.set(null);
       pageState.programText.set(`${'\n'.repeat(moved)}X = DISTANCE;\nSHOW(X)`);
       pageState.breakpoints.set(pageState.breakpoints.value.map((item) => ({ ...item, line: 2 + moved })));
       pageState.checkResult.set({ ...PROGRAM, program: 'ff', bytes: 9, places: [[0, 1 + moved, 1, 1 + moved, 13], [3, 2 + moved, 1, 2 + moved, 8]], halts: [0, 3], findings: [], start: 'SI' });
     };
-    types(0);
-    const checks = async (_, bytes) => {
+    type(0);
+    const check = async (_, bytes) => {
       const image = new TextDecoder().decode(bytes);
       await later(delay());
       const shows = [...image.matchAll(/SHOW\((\w+)\)/g)].map(([, sensor], k) => [k, sensor, 1, 1, false, false]);
       return { image, program: image, places: shows.map(([offset]) => [offset]), shows, findings: [], variables: [], remote: [] };
     };
     const runs = new Runs();
-    const panel = new RobotPanel({ python: { tryAgain() {}, ask: checks }, goTo() {}, recorder: new Recorder({ runs, play() {} }), place: new RunningPlace(), pad: noting([], 'pad') });
+    const panel = new RobotPanel({ python: { tryAgain() {}, ask: check }, goTo() {}, recorder: new Recorder({ runs, play() {} }), place: new RunningPlace(), pad: noting([], 'pad') });
     await wait(10);
     page.byId('senses').hidden = page.byId('link_doing').hidden = true; // as in index.html
-    const presses = (id) => page.byId(id).disabled || page.byId(id).hidden || page.byId(id).click();
+    const press = (id) => page.byId(id).disabled || page.byId(id).hidden || page.byId(id).click();
     const actions = {
-      starts: () => { robot.isOwn ||= robot.isOurs; robot.tell({ event: 'STARTED', ...own }); },
+      begin: () => { robot.isOwn ||= robot.isOurs; robot.tell({ event: 'STARTED', ...own }); },
       others: () => robot.tell({ event: 'STARTED', program: 'dd', is_program: false }),
       place: (random) => robot.tell({ event: 'PLACE', at: random.of([0, 3]), program: 'ff' }),
-      halts: (random) => robot.tell({ event: 'HALTED', at: random.of([0, 3, 1]), task: 0, ...own }),
-      shows: (random) => robot.tell({ event: 'SHOW', at: random.below(3), value: String(random.below(9)), program: random() < 0.7 ? robot.line ?? 'ff' : 'ff' }),
-      reads: (random) => robot.tell({ event: 'READING', rows: [[random.below(99), random.of(['READ DISTANCE 5', 'READ DISTANCE 7', 'UNREAD DISTANCE'])]] }),
-      ends: (random) => robot.tell({ event: random.of(['DONE', 'STOPPED', 'FAULT', 'RESTARTED', 'LOST']), cause: random.of(['BUTTON', 'MESSAGE']), fault: 'STUCK', at: 3, program: 'ff' }),
-      upload: () => presses('link_upload'),
-      start: () => presses('link_start'),
-      step: () => presses('link_step'),
-      goesOn: () => presses('link_go_on'),
-      identify: () => presses('link_identify'),
-      watch: () => robot.open.size || presses('link_watch'),
+      halt: (random) => robot.tell({ event: 'HALTED', at: random.of([0, 3, 1]), task: 0, ...own }),
+      show: (random) => robot.tell({ event: 'SHOW', at: random.below(3), value: String(random.below(9)), program: random() < 0.7 ? robot.line ?? 'ff' : 'ff' }),
+      read: (random) => robot.tell({ event: 'READING', rows: [[random.below(99), random.of(['READ DISTANCE 5', 'READ DISTANCE 7', 'UNREAD DISTANCE'])]] }),
+      end: (random) => robot.tell({ event: random.of(['DONE', 'STOPPED', 'FAULT', 'RESTARTED', 'LOST']), cause: random.of(['BUTTON', 'MESSAGE']), fault: 'STUCK', at: 3, program: 'ff' }),
+      upload: () => press('link_upload'),
+      start: () => press('link_start'),
+      step: () => press('link_step'),
+      goOn: () => press('link_go_on'),
+      identify: () => press('link_identify'),
+      watch: () => robot.open.size || press('link_watch'),
       stop: () => page.byId('stop').click(),
       points(random) {
         const breakpoints = random() < 0.4 ? [] : [{ line: 2 + moved, column: 1, point: {} }];
         robot.wanted = breakpoints.length && robot.hasText ? '3' : '';
         pageState.breakpoints.set(breakpoints);
       },
-      types(random) { // the robot has its breakpoints where they were
-        types(1 + random.below(3));
+      type(random) { // the robot has its breakpoints where they were
+        type(1 + random.below(3));
         robot.hasText = false;
       },
       async line() {
@@ -2662,38 +2662,38 @@ const PARTS = {
       },
       async twice(random) {
         if (robot.open.size) return;
-        presses('link_watch');
+        press('link_watch');
         await wait(random.below(20));
-        presses('link_watch');
+        press('link_watch');
       },
       async startAgain(random) { // after a line, which takes the breakpoints away; perhaps before it is sent
-        const answered = async () => { for (let k = 0; robot.open.size && k < 90; k += 1) await wait(100); };
-        await answered();
+        const awaitAnswers = async () => { for (let k = 0; robot.open.size && k < 90; k += 1) await wait(100); };
+        await awaitAnswers();
         if (isWatched()) actions.watch();
-        await answered();
+        await awaitAnswers();
         actions.upload();
-        await answered();
+        await awaitAnswers();
         actions.points(random);
-        await answered();
+        await awaitAnswers();
         await actions.line();
-        if (random() < 0.5) await answered();
-        if (random() < 0.5) actions.types(random);
+        if (random() < 0.5) await awaitAnswers();
+        if (random() < 0.5) actions.type(random);
         robot.tell({ event: 'DONE' });
         actions.start();
-        await answered();
+        await awaitAnswers();
       },
       again(random) { // it halts, ends and halts, and nobody had time to look
-        actions.halts(random);
+        actions.halt(random);
         robot.tell({ event: 'DONE' });
-        actions.starts();
-        actions.halts(random);
+        actions.begin();
+        actions.halt(random);
       },
-      senses() {
+      sense() {
         robot.tell({ event: 'SHOW', at: 0, value: '9', program: robot.line });
-        actions.starts();
+        actions.begin();
         robot.tell({ event: 'READING', rows: [[5, 'READ DISTANCE 5']] });
       },
-      waits: () => wait(2500),
+      wait: () => wait(2500),
     };
     const isWatched = () => page.byId('link_watch').attributes['aria-pressed'] === 'true';
     const gauges = () => page.byId('senses').hidden || page.byId('gauges').children.map((row) => row.children[1].textContent);
@@ -2704,7 +2704,7 @@ const PARTS = {
       gauges(), isWatched(), [...plotted], robot?.isOwn && [page.byId('record_lacks').hidden || page.byId('record_lacks').textContent, runs.newestFirst[0]?.rows],
     ];
     /** The sensors are watched, and a program comes first, whatever was before. */
-    const watchesAgain = async (byHand) => {
+    const checkWatching = async (byHand) => {
       const assertWatched = (isOn, when) => { if (isWatched() !== isOn) throw new Error(`${isOn ? 'nothing is' : 'something is still'} watched ${when}`); };
       robot.tell({ event: 'DONE' });
       await wait(100);
@@ -2715,7 +2715,7 @@ const PARTS = {
       await wait(1500);
       assertWatched(true, 'after something else was asked');
       actions.upload();
-      actions.starts();
+      actions.begin();
       assertWatched(false, 'beside a program');
       await wait(1500);
       assertWatched(false, 'beside a program');
@@ -2730,7 +2730,7 @@ const PARTS = {
       await wait(3000);
       assertWatched(false, 'after a STOP');
       actions.upload();
-      actions.starts();
+      actions.begin();
       await wait(100);
       robot.tell({ event: 'DONE' });
       await wait(3000);
@@ -2743,7 +2743,7 @@ const PARTS = {
       window.localStorage.removeItem('tiniscript.watches');
       if (random() < 0.4) window.localStorage.setItem('tiniscript.watches', 'on');
       pageState.breakpoints.set([]);
-      types(0);
+      type(0);
       info = { has_breakpoints: random() < 0.8, has_readings: random() < 0.5, ...random.of([{ is_running: true, is_idle: false }, { is_running: false, is_idle: true }, { is_running: false, is_idle: false }]) };
       panel.connectByHost('p');
       const observations = [observe()];
@@ -2753,7 +2753,7 @@ const PARTS = {
       await wait(isGood ? 50 : random.below(400));
       if (random() < 0.6) actions.upload();
       for (let k = 4 + random.below(12); k > 0; k -= 1) {
-        const end = random.of(['starts', 'halts', 'shows', 'shows', ...Object.keys(actions)]);
+        const end = random.of(['begin', 'halt', 'show', 'show', ...Object.keys(actions)]);
         ends.add(end);
         await actions[end](random);
         observations.push([observe(), page.byId('link_shown').textContent]);
@@ -2765,14 +2765,14 @@ const PARTS = {
       }
       await wait(8000);
       if (wrong) throw new Error(wrong);
-      if (robot.watches && !isWatched()) throw new Error('its sensors are read, and nobody watches them');
+      if (robot.isWatching && !isWatched()) throw new Error('its sensors are read, and nobody watches them');
       observations.push(observe());
-      if (isGood) await watchesAgain(random() < 0.5);
+      if (isGood) await checkWatching(random() < 0.5);
       else { // it is gone before the answer
         robot.tell({ event: 'DONE' });
         if (!isWatched() && random() < 0.7) actions.watch();
         await wait(6000);
-        await actions[random.of(['watch', 'line', 'step', 'identify', 'identify', 'senses', 'senses'])](random);
+        await actions[random.of(['watch', 'line', 'step', 'identify', 'identify', 'sense', 'sense'])](random);
       }
       robot.end(random.of(['left', 'unheard']));
       await wait(isGood ? 50 : random.below(200));
@@ -2802,7 +2802,7 @@ const PARTS = {
         if (random() < lossRate) throw new Broken();
         if (request.do === 'stop_all') began_ms = now();
         isAnswered = true;
-        return answers({ robots: robots.map((item) => ({ name: item.name, stop: now() - began_ms < item.late_ms ? 'asked' : 'confirmed' })) });
+        return responseOf({ robots: robots.map((item) => ({ name: item.name, stop: now() - began_ms < item.late_ms ? 'asked' : 'confirmed' })) });
       };
       let isAnswered = false;
       stopAll();
@@ -2837,13 +2837,13 @@ const PARTS = {
       const { OwnWorlds } = await page.load('world/own.js');
       const { loadWorldTexts } = await page.load('programs/work.js');
       const unreadable = new Set();
-      let madeCount = 0, delay = () => 5, asks = 0, isReady = true, wrong = '';
+      let madeCount = 0, delay = () => 5, askCount = 0, isReady = true, wrong = '';
       const textOf = ({ id = 0 }) => (id % 7 ? `text of ${id}\n# no name` : '');
       const python = () => ({
         ready: later(isReady ? 0 : 200).then(() => { isReady = true; }),
         async ask({ do: action, form, name }, data) {
           if (!isReady) wrong = 'it is asked before it is there';
-          asks += 1;
+          askCount += 1;
           await later(delay());
           if (action === 'write_world') return textOf(form) ? { text: textOf(form) } : { refused: ['no'] };
           const text = new TextDecoder().decode(data), id = Number(/^text of (\d+)\n# no name$/.exec(text)?.[1]);
@@ -2857,15 +2857,15 @@ const PARTS = {
       const readWorlds = () => [own.newestWorld, ...own.earlierWorlds].map((world) => world && [world.id, world.name]);
       const rowOf = (list) => list.map((world) => world && [world.id, world.name]);
       const assertSame = (actual, expected, label) => { if (JSON.stringify(actual) !== JSON.stringify(expected)) throw new Error(`${label}: ${JSON.stringify(actual)} in place of ${JSON.stringify(expected)}`); };
-      const hasRoomFor = (hasRoom) => { window.localStorage.room = window.sessionStorage.room = hasRoom ? Infinity : 0; };
-      const sets = (world, isOther) => {
+      const setRoom = (hasRoom) => { window.localStorage.room = window.sessionStorage.room = hasRoom ? Infinity : 0; };
+      const setNewest = (world, isOther) => {
         const [before, ...earlier] = worlds;
         worlds = [world, ...isOther && before ? [before] : [], ...earlier].slice(0, 1 + MOST_EARLIER);
       };
       const actions = {
-        draws() {
+        draw() {
           const world = { id: (madeCount += 1), name: random.of(['', 'n', '# n']) }, isOther = random() < 0.6;
-          sets(world, isOther);
+          setNewest(world, isOther);
           own.setNewest(world, isOther);
         },
         earlier() {
@@ -2873,20 +2873,20 @@ const PARTS = {
           own.restoreEarlier(index);
           if (!world) return;
           worlds = [worlds[0], ...earlier.filter((item) => item !== world)];
-          sets(world, true);
+          setNewest(world, true);
         },
-        keeps() {
+        keep() {
           const number = (newest += 1), worldsBefore = worlds, hasRoom = random() < 0.8;
-          hasRoomFor(hasRoom);
+          setRoom(hasRoom);
           own.storeTexts('tinibot').then((isKept) => {
             if (number !== newest) return assertSame(isKept, true, 'what a newer one says');
             assertSame(isKept, window.localStorage.room > 0, 'whether it is kept');
             if (isKept) keptWorlds = [textOf(worldsBefore[0] ?? {}) ? worldsBefore[0] : keptWorlds[0], ...worldsBefore.slice(1)]; // one that nobody can write takes no other's place
           }).catch((error) => { wrong = String(error); });
         },
-        async reloads() {
+        async reload() {
           await wait(3000);
-          hasRoomFor(true);
+          setRoom(true);
           for (const world of keptWorlds) if (world && random() < 0.15) unreadable.add(world.id);
           isReady = random() < 0.5;
           own = new OwnWorlds(python());
@@ -2898,24 +2898,24 @@ const PARTS = {
           assertSame(isWhole, !hadText || isThere([before]), 'whether it is whole');
           worlds = [isThere([before]) ? before : null, ...earlier.filter((world) => isThere([world]))];
         },
-        async rests() { // then nobody has to write them once more
-          actions.keeps();
+        async rest() { // then nobody has to write them once more
+          actions.keep();
           await wait(3000);
-          asks = 0;
-          actions.keeps();
+          askCount = 0;
+          actions.keep();
           await wait(3000);
-          assertSame(asks, 0, 'how often they are written');
+          assertSame(askCount, 0, 'how often they are written');
         },
-        waits: () => {},
+        wait: () => {},
       };
       const ends = new Set();
       for (let k = 5 + random.below(20); k > 0; k -= 1) {
-        const act = random.of(['draws', 'draws', 'keeps', ...Object.keys(actions)]);
+        const act = random.of(['draw', 'draw', 'keep', ...Object.keys(actions)]);
         delay = () => 5 + random.below(random.of([5, 600]));
         ends.add(act);
         await actions[act]();
         await wait(random.of([0, 100, 2000]));
-        assertSame(readWorlds(), rowOf(worlds), `after it ${act}`);
+        assertSame(readWorlds(), rowOf(worlds), `after ${act}`);
         if (wrong) throw new Error(wrong);
       }
       await wait(3000);
@@ -2945,27 +2945,27 @@ const PARTS = {
     });
     drawing.enable();
     page.byId('world_draw').click();
-    const presses = (id, detail = 1) => page.byId(`world_${id}`).dispatchEvent(Object.assign(new Event('click'), { detail }));
-    const types = (key) => page.byId('arena').dispatchEvent(Object.assign(new Event('keydown'), { key, preventDefault() {} }));
+    const press = (id, detail = 1) => page.byId(`world_${id}`).dispatchEvent(Object.assign(new Event('click'), { detail }));
+    const type = (key) => page.byId('arena').dispatchEvent(Object.assign(new Event('keydown'), { key, preventDefault() {} }));
     const KINDS = ['walls', 'boxes', 'lines', 'lamps', 'flags', 'rings', 'rivals'];
     let worlds = 0;
     const actions = {
-      adds: (random) => presses(`add_${random.of(KINDS)}`, 0),
-      turns: (random) => presses(random.of(['turn_left', 'turn_right'])),
-      moves: (random) => types(random.of(['ArrowLeft', 'ArrowRight', 'ArrowUp', 'ArrowDown'])),
-      deletes: () => presses('delete'),
-      undoes: () => presses('undo'),
-      redoes: () => presses('redo'),
-      leaves() {
-        presses('done');
-        presses('draw');
+      add: (random) => press(`add_${random.of(KINDS)}`, 0),
+      turn: (random) => press(random.of(['turn_left', 'turn_right'])),
+      move: (random) => type(random.of(['ArrowLeft', 'ArrowRight', 'ArrowUp', 'ArrowDown'])),
+      delete: () => press('delete'),
+      undo: () => press('undo'),
+      redo: () => press('redo'),
+      leave() {
+        press('done');
+        press('draw');
       },
-      enters() {
+      enter() {
         world = empty(`w${(worlds += 1)}`);
         choice.isOwn = false;
         drawing.reset();
       },
-      async opens() {
+      async open() {
         chooseFile(page.byId('world_file'), new File(['w'], 'w.toml'));
         await wait(50);
       },
@@ -2976,19 +2976,19 @@ const PARTS = {
     return async (random) => {
       let end = '';
       for (let k = 4 + random.below(16); k > 0; k -= 1) {
-        end = random.of(['adds', 'adds', 'moves', 'undoes', 'undoes', 'redoes', ...Object.keys(actions)]);
+        end = random.of(['add', 'add', 'move', 'undo', 'undo', 'redo', ...Object.keys(actions)]);
         const before = drawn();
         await actions[end](random);
         await wait(random.below(50));
-        if (end === 'enters' || end === 'opens') past = future = [];
-        else if (end === 'undoes' || end === 'redoes') {
-          const [from, to] = end === 'undoes' ? [past, future] : [future, past];
+        if (end === 'enter' || end === 'open') past = future = [];
+        else if (end === 'undo' || end === 'redo') {
+          const [from, to] = end === 'undo' ? [past, future] : [future, past];
           const expected = from.at(-1) ?? before;
-          if (drawn() !== expected) throw new Error(`it ${end} ${drawn()} and not ${expected}`);
-          if (from.length) [past, future] = end === 'undoes' ? [past.slice(0, -1), [...to, before]] : [[...to, before], future.slice(0, -1)];
+          if (drawn() !== expected) throw new Error(`after ${end} it is ${drawn()} and not ${expected}`);
+          if (from.length) [past, future] = end === 'undo' ? [past.slice(0, -1), [...to, before]] : [[...to, before], future.slice(0, -1)];
         } else if (drawn() !== before) [past, future] = [[...past, before], []];
         const enabledHistory = ['undo', 'redo'].map((id) => !page.byId(`world_${id}`).disabled);
-        if (`${enabledHistory}` !== `${[past, future].map((item) => item.length > 0)}`) throw new Error(`after it ${end} it can ${enabledHistory}`);
+        if (`${enabledHistory}` !== `${[past, future].map((item) => item.length > 0)}`) throw new Error(`after ${end} it can ${enabledHistory}`);
       }
       return { ends: [end], seen: [] };
     };
@@ -3026,7 +3026,7 @@ const PARTS = {
     const inForm = (versions) => JSON.stringify(versions.map(({ text, robot, name }) => [text, robot, name]));
     const store = window.localStorage;
     /** It shows the program that is in the editor then, and nothing that was asked of another one. */
-    const opens = () => {
+    const open = () => {
       page.byId('my_programs').click();
       const shown = [page.byId('share').open, page.byId('programs').dataset.shared, page.byId('program_name').value, page.byId('public').value];
       const expected = [false, undefined, work.name.replace(/\.ts$/, ''), store.getItem('tiniscript.public') ?? ''];
@@ -3035,7 +3035,7 @@ const PARTS = {
     const fits = (versions) => versions.length <= 40 && JSON.stringify(versions).length <= store.roomFor('tiniscript.versions')
       && (versions.length < 2 || versions.reduce((sum, { text }) => sum + text.length, 0) <= MOST_CHARACTERS);
     /** The newest are kept, as many as there is room for; where not even one is, all stay that were there. @returns whether this one is there */
-    const keeps = (act, before, expected, version) => {
+    const checkKept = (act, before, expected, version) => {
       let fitCount = version?.text.length > MOST_CHARACTERS ? 0 : expected.length;
       while (fitCount && !fits(expected.slice(0, fitCount))) fitCount -= 1;
       const kept = fitCount || !expected.length ? expected.slice(0, fitCount) : before;
@@ -3044,7 +3044,7 @@ const PARTS = {
       if (refusals.includes(refusal) === isKept) throw new Error(`${act}: it is ${isKept ? '' : 'not '}kept, and the page says ${refusal}`);
       return isKept;
     };
-    const does = (act) => {
+    const perform = (act) => {
       pageState.note.set('');
       refusal = '';
       return act();
@@ -3053,21 +3053,21 @@ const PARTS = {
       const ends = new Set();
       delay = () => random.below(random.of([1, 300]));
       const actions = {
-        writes: () => { work.text = `// ${(count += 1)}\n${'F(1);'.repeat(1 + random.below(random.of([20, 30_000, 90_000])))}`; },
+        write: () => { work.text = `// ${(count += 1)}\n${'F(1);'.repeat(1 + random.below(random.of([20, 30_000, 90_000])))}`; },
         again: () => { work.text = random.of(loadVersions())?.text ?? work.text; },
         blank: () => { work.text = ' '; },
         run: () => page.byId('run').click(),
-        opens,
+        open,
         new: () => page.byId('new').click(),
-        publishes() { // another tab does
+        publish() { // another tab does
           const { room } = store;
           store.room = Infinity;
           store.setItem('tiniscript.public', random.of([`http://there.example/${(count += 1)}/`, 'nowhere']));
           store.room = room;
         },
-        closes: () => page.byId('programs_close').click(),
-        async shares() { // what is asked last, of what is seen then
-          if (!page.byId('programs').open) opens();
+        close: () => page.byId('programs_close').click(),
+        async share() { // what is asked last, of what is seen then
+          if (!page.byId('programs').open) open();
           page.byId('share').open = true;
           page.byId('share').dispatchEvent(new Event('toggle'));
           const form = random.of(['link', 'line']);
@@ -3085,26 +3085,26 @@ const PARTS = {
           const isLine = page.byId('share_line').attributes['aria-pressed'] === 'true', refusal = page.byId('shared_told').textContent;
           if (isLine !== (form === 'line') || refusal.startsWith(textOf('share_line_told')) !== isLine) throw new Error(`of a ${form} it says: ${refusal}`);
         },
-        async asks() { // and what comes of it nobody waits for
+        async ask() { // and what comes of it nobody waits for
           if (!page.byId('programs').open) return;
           page.byId('share_line').click();
           await wait(random.below(100));
         },
         lesson: () => programs.replaceProgram({ text: `S; // ${(count += 1)}`, robot: random.of(['tinibot', 'liner']), name: '' }),
         older: () => {
-          opens();
+          open();
           random.of([...list.children, null])?.children[0]?.click();
         },
-        names: () => {
+        rename: () => {
           page.byId('program_name').value = `name ${(count += 1)}`;
           page.byId('program_name').dispatchEvent(new Event('input'));
         },
-        hides: () => {
+        hide: () => {
           document.hidden = true;
           document.dispatchEvent(new Event('visibilitychange'));
           document.hidden = false;
         },
-        leaves: () => dispatchEvent(new Event('pagehide')),
+        leave: () => dispatchEvent(new Event('pagehide')),
         link: async () => {
           const link = await makeLink({ text: `B(${(count += 1)});`, robot: 'tinibot' }, location.href);
           location.hash = link.slice(link.indexOf('#'));
@@ -3113,31 +3113,31 @@ const PARTS = {
           if (work.text !== `B(${count});`) throw new Error('the program of a link is not seen');
         },
       };
-      const keeping = ['run', 'opens', 'new', 'lesson', 'older', 'names', 'hides', 'leaves', 'link'];
+      const keeping = ['run', 'open', 'new', 'lesson', 'older', 'rename', 'hide', 'leave', 'link'];
       for (let k = random.of([0, 0, 0, 0, 0, 38]); k > 0; k -= 1) storeVersion({ text: `W(${(count += 1)});`, robot: 'tinibot', name: '' });
       for (let k = 4 + random.below(16); k > 0; k -= 1) {
         if (random() < 0.2) store.room = [...store].reduce((sum, [, whole]) => sum + whole.length, 0) + random.of([Infinity, 300_000, 100_000, 1000, 100, 0]);
         const act = random.of(Object.keys(actions));
-        const before = { ...work, ...(act === 'names' && { name: `name ${count + 1}.ts` }) };
+        const before = { ...work, ...(act === 'rename' && { name: `name ${count + 1}.ts` }) };
         const kept = loadVersions();
-        await does(actions[act]);
+        await perform(actions[act]);
         if (!keeping.includes(act) || !before.text.trim() || before.text === FIRST_PROGRAM) continue;
-        if (act === 'names' && store.room === Infinity && loadWork()?.name !== before.name) throw new Error(`its name is ${loadWork()?.name}`);
+        if (act === 'rename' && store.room === Infinity && loadWork()?.name !== before.name) throw new Error(`its name is ${loadWork()?.name}`);
         const version = { text: before.text, robot: before.robot, name: before.name, at_ms: now_ms };
         const others = kept.filter(({ text, robot }) => text !== before.text || robot !== before.robot);
-        ends.add(keeps(act, kept, [version, ...others], version) ? 'kept' : 'full');
-        if (act !== 'opens') continue;
+        ends.add(checkKept(act, kept, [version, ...others], version) ? 'kept' : 'full');
+        if (act !== 'open') continue;
         const stored = loadVersions();
         const number = random.below(stored.length);
         const row = list.children[1 + number];
         if (!row?.children[1]) continue; // it is in the editor
         const deleted = stored[number];
-        does(() => row.children[1].click());
-        keeps('deletes', stored, stored.filter((item) => item !== deleted));
+        perform(() => row.children[1].click());
+        checkKept('deletes', stored, stored.filter((item) => item !== deleted));
         if (random() < 0.5) storeVersion(random.of([{ text: `T(${(count += 1)});`.repeat(random.of([1, 10_000])), robot: 'tinibot', name: '' }, deleted])); // another tab does
         const remaining = loadVersions(), restored = remaining.find(({ text, robot }) => text === deleted.text && robot === deleted.robot);
-        does(() => row.children[0].click());
-        keeps('brings back', remaining, restored ? remaining : [...remaining, deleted].sort((first, second) => second.at_ms - first.at_ms), restored ?? deleted);
+        perform(() => row.children[0].click());
+        checkKept('brings back', remaining, restored ? remaining : [...remaining, deleted].sort((first, second) => second.at_ms - first.at_ms), restored ?? deleted);
       }
       store.room = Infinity;
       return { ends: [...ends], seen: [] };
@@ -3238,23 +3238,23 @@ const PARTS = {
     new Lessons({ python, simulatorPanel: driving, putProgram() {}, work: { text: '', robot: '', name: '', lesson: '', own: null } });
     page.byId('lessons').hidden = false;
     const choice = page.byId('lesson');
-    const opens = () => {
+    const open = () => {
       pendingLooks += 1;
       page.byId('side_lessons').click();
     };
-    const goesOn = () => {
+    const goOn = () => {
       const next = page.byId('lesson_next');
       if (next.disabled || next.hidden) return;
       pendingLooks += 1;
       next.click();
     };
-    const solves = async () => {
-      while (!choice.disabled && page.byId('lesson_check').hidden) goesOn();
+    const solve = async () => {
+      while (!choice.disabled && page.byId('lesson_check').hidden) goOn();
       if (!choice.disabled) page.byId('lesson_check').click();
       await wait(700);
-      goesOn();
+      goOn();
     };
-    const chooses = (number) => {
+    const choose = (number) => {
       if (choice.disabled) return;
       pendingLooks = 1;
       choice.value = String(number);
@@ -3263,11 +3263,11 @@ const PARTS = {
     return async (random, isGood) => {
       delay = () => (isGood ? 5 : 5 + random.below(300));
       fails = () => !isGood && random() < 0.3;
-      opens();
+      open();
       let end = 'came';
       for (let k = random.below(isGood ? 1 : 10); k > 0; k -= 1) {
-        const choosesAny = () => chooses(1 + random.below(3));
-        await random.of([opens, goesOn, solves, choosesAny, choosesAny])();
+        const chooseAny = () => choose(1 + random.below(3));
+        await random.of([open, goOn, solve, chooseAny, chooseAny])();
         for (let k = random.below(4); k > 0; k -= 1) {
           await wait(random.below(150));
           const [name, hint] = [page.byId('lesson_name').textContent, page.byId('lesson_hint_said').children[0]?.children ?? ['']];
@@ -3280,7 +3280,7 @@ const PARTS = {
       await wait(isGood ? 1000 : 0);
       if (isGood && newest.name !== '' && newest.name !== page.byId('lesson_name').textContent) throw new Error(`${newest.name} is not seen`);
       if (isGood && `L${choice.value}` !== page.byId('lesson_name').textContent) throw new Error(`${choice.value} is chosen, and another one is seen`);
-      if (isGood) chooses(1 + random.below(3));
+      if (isGood) choose(1 + random.below(3));
       await wait(isGood ? 500 : 0);
       const hint = page.byId('lesson_hint_said').children[0]?.children;
       return { ends: [end], seen: isGood && [page.byId('lesson_name').textContent, hint, page.byId('lesson_steps').children.length, pageState.taughtBlocks.value, choice.value, choice.disabled, page.byId('lesson_said').textContent, world] };
@@ -3301,65 +3301,65 @@ const PARTS = {
     const programs = ['a', 'b'].map((program) => ({ program, text, places, halts, variables: [{ name: 'X', is_yes_no: false }] }));
     const points = places.map(() => ({}));
     pageState.programText.set(text);
-    let answersLate = () => 5, loses = () => false, wrong = '';
+    let delay = () => 5, loses = () => false, wrong = '';
     let info = null; // of the robot that is connected
     let newest = null; // what was pressed last: a stop, or a start, and what the robot has to know before
     let haltPlaces = []; // where it is to halt
     let known = '', breakRequest = null; // where it halts, and what has said so
     let isHalted = false, clock = 0; // whether its time stands
     let isPaused = false; // before its first instruction
-    const fails = (message) => { wrong ||= message; };
+    const fail = (message) => { wrong ||= message; };
     const all = () => `${(isPaused ? [0, ...haltPlaces] : haltPlaces).slice(0, LINK.most_breakpoints)}`;
     const debugging = new Debugging({
       async ask(request) {
         const { do: action } = request;
         if (action === 'start') {
-          if (newest?.kind !== 'start') fails(`it is started after ${newest?.kind}`);
-          else if (newest.hasPlaces && known !== all() && !(newest.isPaused && known.startsWith('0'))) fails(`it starts with ${known} in place of ${all()}`);
+          if (newest?.kind !== 'start') fail(`it is started after ${newest?.kind}`);
+          else if (newest.hasPlaces && known !== all() && !(newest.isPaused && known.startsWith('0'))) fail(`it starts with ${known} in place of ${all()}`);
         }
         const isLost = loses();
         if (action === 'break') [known, breakRequest] = [`${request.places}`, request]; // requests arrive in their order
         if (action === 'resume') {
-          if (!isHalted) fails('what is not halted goes on');
+          if (!isHalted) fail('what is not halted goes on');
           isHalted = false;
         }
         const runInfo = info;
-        await later(answersLate());
+        await later(delay());
         if (isLost && breakRequest === request && runInfo === info) known = 'nobody knows';
         if (isLost || runInfo !== info) return null; // also of a robot that is gone
         return action === 'variables' ? { variables: [7] } : action === 'tasks' ? { tasks: [['RUNNING', 0], ['WAITING', 20]] } : { ok: true };
       },
-      uploadPaused: () => actions.uploads(null, true), say() {}, sayAnew() {}, canGetHaltingFirmware: async () => false, getHaltingFirmware() {},
+      uploadPaused: () => actions.upload(null, true), say() {}, sayAnew() {}, canGetHaltingFirmware: async () => false, getHaltingFirmware() {},
       place: { halt: () => {}, resume: () => {} },
       recorder: { halt: () => { clock = 1; }, resume: () => { clock = 0; } },
     });
     let program = null, isRunning = false, isStepping = false;
-    const tells = (event) => debugging.onEvent(event);
-    const endRun = (starts) => {
-      [isRunning, isHalted, isStepping] = [starts, false, false];
-      if (!starts) isPaused = false;
+    const tell = (event) => debugging.onEvent(event);
+    const endRun = (isStarting) => {
+      [isRunning, isHalted, isStepping] = [isStarting, false, false];
+      if (!isStarting) isPaused = false;
       clock = 0;
     };
     const actions = {
-      meets(random) {
+      meet(random) {
         info = random() < 0.9 ? { has_breakpoints: random() < 0.8, is_running: random() < 0.2 } : null;
         [program, known, newest] = [null, '', null];
         endRun(info?.is_running ?? false);
         debugging.onRobotChange(info);
       },
-      uploads(random, paused = random() < 0.3) {
+      upload(random, paused = random() < 0.3) {
         if (!info || isRunning) return;
         program = programs[clock % 2];
         [known, isPaused] = ['', paused];
         newest = { kind: 'upload' };
-        const ownRun = newest, runInfo = info, starts = !random || random() < 0.8;
-        const does = debugging.onUpload(program, paused);
-        if (Boolean(does) !== Boolean(info.has_breakpoints && (paused || haltPlaces.length))) fails('its places are not sent');
-        if (!does) isPaused = false;
-        later(answersLate()).then(() => {
+        const ownRun = newest, runInfo = info, isStarting = !random || random() < 0.8;
+        const proceed = debugging.onUpload(program, paused);
+        if (Boolean(proceed) !== Boolean(info.has_breakpoints && (paused || haltPlaces.length))) fail('its places are not sent');
+        if (!proceed) isPaused = false;
+        later(delay()).then(() => {
           if (runInfo !== info) return;
-          if (newest === ownRun && starts) newest = { kind: 'start', hasPlaces: true, isPaused: paused }; // which halts at once, and gets what is new then
-          does?.(starts);
+          if (newest === ownRun && isStarting) newest = { kind: 'start', hasPlaces: true, isPaused: paused }; // which halts at once, and gets what is new then
+          proceed?.(isStarting);
         });
       },
       startAgain() {
@@ -3376,55 +3376,55 @@ const PARTS = {
         if (known) known = 'none'; // what it halts at is gone
         debugging.onLineSent();
       },
-      breaks(random) {
+      setBreakpoints(random) {
         const lines = places.filter(() => random() < 0.3).map(([, line]) => line);
         haltPlaces = lines.map((line) => halts[line - 1]);
         pageState.breakpoints.set(lines.map((line) => ({ line, column: 1, point: points[line - 1] })));
       },
-      begins() {
+      begin() {
         if (!info || isRunning) return;
         endRun(true);
-        tells({ event: 'STARTED', is_program: true });
+        tell({ event: 'STARTED', is_program: true });
       },
-      ends(random) {
+      end(random) {
         endRun(false);
-        tells({ event: random.of(['DONE', 'FAULT', 'STOPPED', 'LOST']) });
+        tell({ event: random.of(['DONE', 'FAULT', 'STOPPED', 'LOST']) });
       },
-      halts(random) {
+      halt(random) {
         if (!isRunning || isHalted || !program || !info?.has_breakpoints) return;
         const offset = random.of([halts[2], halts[4], 3]), isWithin = offset === 3;
         isHalted = true;
-        const goesOn = isWithin && (isStepping || isPaused);
-        if (!goesOn) isPaused = false;
-        tells({ event: 'HALTED', is_program: true, at: offset, task: 0 });
-        if (isHalted === goesOn) fails(`at ${offset} it ${isHalted ? 'stands' : 'goes on'}`);
-        if (!clock) fails('the clock of the recording goes on in a halt');
+        const isGoingOn = isWithin && (isStepping || isPaused);
+        if (!isGoingOn) isPaused = false;
+        tell({ event: 'HALTED', is_program: true, at: offset, task: 0 });
+        if (isHalted === isGoingOn) fail(`at ${offset} it ${isHalted ? 'stands' : 'goes on'}`);
+        if (!clock) fail('the clock of the recording goes on in a halt');
       },
-      goesOn(random) {
+      goOn(random) {
         const isStep = random() < 0.5, before = isHalted;
         if (!isStep || before) {
           if (before) [isStepping, clock] = [isStep, 1];
           page.byId(isStep ? 'link_step' : 'link_go_on').click();
-          if (before && (isHalted || clock)) fails('it does not go on');
+          if (before && (isHalted || clock)) fail('it does not go on');
         }
       },
-      waits: () => {},
+      wait: () => {},
     };
     return async (random, isGood) => {
       wrong = '';
-      actions.meets(random);
+      actions.meet(random);
       const acted = new Set();
       for (let k = 10 + random.below(40); k > 0; k -= 1) {
-        answersLate = () => 1 + random.below(random.of([5, 300]));
+        delay = () => 1 + random.below(random.of([5, 300]));
         loses = () => !isGood && random() < 0.3;
-        const act = random.of([...!info || !program ? ['meets', 'uploads'] : isRunning ? ['halts', 'goesOn', 'halts', 'ends'] : ['uploads', 'breaks', 'startAgain', 'stop'], ...Object.keys(actions)]);
+        const act = random.of([...!info || !program ? ['meet', 'upload'] : isRunning ? ['halt', 'goOn', 'halt', 'end'] : ['upload', 'setBreakpoints', 'startAgain', 'stop'], ...Object.keys(actions)]);
         actions[act](random);
         acted.add(act);
         await wait(random.of([0, 20, 500]));
         if (wrong) throw new Error(`after ${[...acted]}: ${wrong}`);
         const isShown = dataset['halt'];
-        if ((isShown === 'halted' || isShown === 'read') !== isHalted) throw new Error(`after it ${act} ${isShown} is seen`);
-        if (!isHalted && isShown !== (isRunning ? 'running' : 'none')) throw new Error(`after it ${act} ${isShown} is seen of what runs: ${isRunning}`);
+        if ((isShown === 'halted' || isShown === 'read') !== isHalted) throw new Error(`after ${act} ${isShown} is seen`);
+        if (!isHalted && isShown !== (isRunning ? 'running' : 'none')) throw new Error(`after ${act} ${isShown} is seen of what runs: ${isRunning}`);
       }
       return { ends: [...acted], seen: [] };
     };
@@ -3444,7 +3444,7 @@ const PARTS = {
     page.byId('record_play').hidden = true; // as in index.html
     const recorder = new Recorder({ runs: { addRun: (run) => runs.addRun(run), forgetOldest: () => { trims += 1; runs.forgetOldest(); } }, play() {} });
     let sentPrograms = []; // the programs that robots have from here, the newest last
-    const sends = (name, isSensing) => {
+    const send = (name, isSensing) => {
       const text = `// ${name}${isSensing ? ' DISTANCE' : ''}`;
       pageState.robotName.set('tinibot');
       pageState.programText.set(text);
@@ -3455,24 +3455,24 @@ const PARTS = {
     let ran = null; // its program
     let isOpen = false;
     let unread = false; // what a sensor of the newest run has read, and nobody knows
-    let lacks = false; // the robot tells of no readings
+    let lacksReadings = false; // the robot tells of no readings
     let began = null; // by the clock that stands in a halt; null before the first row of a run by the button
     let halted = null, byButton = false, end_ms = null, endedCount = 0;
-    const goesOn = () => {
+    const goOn = () => {
       if (halted !== null && began !== null) began += now() - halted;
       halted = null;
     };
     const elapsed = () => (began === null ? 0 : Math.round(now() - began));
-    const ends = (event) => {
-      goesOn();
+    const endRun = (event) => {
+      goOn();
       if (!isOpen) return;
       end_ms = Math.min(elapsed(), MOST_MS);
       ownEvents.push([end_ms, event]);
       isOpen = false;
       endedCount += 1;
     };
-    const begins = (name, at) => {
-      ends('STOPPED');
+    const beginRun = (name, at) => {
+      endRun('STOPPED');
       [ownEvents, unread, halted] = [[], false, null];
       ran = sentPrograms.find((item) => item.name === name) ?? null;
       isOpen = ran !== null;
@@ -3482,84 +3482,84 @@ const PARTS = {
     const reportRows = (rows) => {
       if (isOpen) for (const row of rows) {
         began ??= now() - row[0];
-        if (isFull(row[0])) { ends('STOPPED'); break; }
+        if (isFull(row[0])) { endRun('STOPPED'); break; }
         ownEvents.push(row);
         unread ||= row[1].startsWith('UNREAD');
       }
       recorder.onEvent({ event: 'READING', rows });
     };
     const actions = {
-      sends: (random) => sends(`p${random.below(30)}`, random() < 0.5),
-      meets(random) {
-        lacks = random() < 0.5;
-        recorder.onRobotChange({ has_readings: !lacks });
+      send: (random) => send(`p${random.below(30)}`, random() < 0.5),
+      meet(random) {
+        lacksReadings = random() < 0.5;
+        recorder.onRobotChange({ has_readings: !lacksReadings });
       },
       ours(random) {
         const { name } = random.of(sentPrograms), ms = random() < 0.2 ? random.below(50) : undefined;
-        if (ms !== undefined) lacks = true;
-        begins(name, now());
+        if (ms !== undefined) lacksReadings = true;
+        beginRun(name, now());
         recorder.onEvent({ event: 'STARTED', program: name, is_program: true, ms });
       },
-      waits(random) {
+      awaitButton(random) {
         const { name } = random.of(sentPrograms);
-        begins(name, null);
+        beginRun(name, null);
         recorder.awaitButton(name);
       },
       theirs() {
-        ends('STOPPED');
+        endRun('STOPPED');
         recorder.onEvent({ event: 'STARTED', program: 'bb', is_program: false });
       },
       unknown(random) { // of which this page has nothing, or nothing any more
         const name = random.of(['cc', `p${random.below(30)}`]);
-        begins(name, now());
+        beginRun(name, now());
         recorder.onEvent({ event: 'STARTED', program: name, is_program: true });
       },
-      shows(random) {
+      show(random) {
         if (halted !== null) return; // it stands
         const value = String(random.below(1000)), ms = random() < 0.2 ? Math.max(0, elapsed() + 20 - random.below(60)) : undefined;
         if (isOpen) {
           began = Math.min(began ?? Infinity, now() - (ms ?? 0));
-          if (isFull(elapsed())) ends('STOPPED');
+          if (isFull(elapsed())) endRun('STOPPED');
           else ownEvents.push([ms ?? elapsed(), `SHOW ${value}`]);
         }
         recorder.onEvent({ event: 'SHOW', value, ms });
       },
-      reads(random) { // in the robot's own time
+      read(random) { // in the robot's own time
         if (halted !== null) return;
         const at_ms = now() - (began ?? now() - 5);
         reportRows([[Math.round(at_ms), random.of(['READ DISTANCE 5', 'READ DISTANCE 7', 'UNREAD DISTANCE'])]]);
       },
-      ends(random) {
+      end(random) {
         const event = random.of(['DONE', 'STOPPED', 'MISSED', 'LOST', 'RESTARTED']);
         if (isOpen) began ??= now();
-        ends(event === 'RESTARTED' ? 'LOST' : event);
+        endRun(event === 'RESTARTED' ? 'LOST' : event);
         recorder.onEvent({ event });
       },
       gone() {
-        ends('LOST');
+        endRun('LOST');
         recorder.end('LOST');
       },
-      halts() {
+      halt() {
         if (!isOpen || began === null) return;
         halted ??= now();
         recorder.halt();
       },
-      goesOn() {
-        goesOn();
+      goOn() {
+        goOn();
         recorder.resume();
       },
-      lasts: (random) => wait(random.of([1000, 700_000])),
+      wait: (random) => wait(random.of([1000, 700_000])),
     };
     return async (random) => {
       const acted = new Set();
       let end = '', isTold = true;
-      sends('aa', false);
-      if (random() < 0.3) for (let k = 29; k >= 0; k -= 1) sends(`p${k}`, false);
-      const assertSame = (actual, expected, label) => { if (JSON.stringify(actual) !== JSON.stringify(expected)) throw new Error(`after it ${end} ${label}: ${JSON.stringify(actual)?.slice(-300)} in place of ${JSON.stringify(expected)?.slice(-300)}`); };
+      send('aa', false);
+      if (random() < 0.3) for (let k = 29; k >= 0; k -= 1) send(`p${k}`, false);
+      const assertSame = (actual, expected, label) => { if (JSON.stringify(actual) !== JSON.stringify(expected)) throw new Error(`after ${end} ${label}: ${JSON.stringify(actual)?.slice(-300)} in place of ${JSON.stringify(expected)?.slice(-300)}`); };
       for (let k = 1 + random.below(16); k > 0; k -= 1) {
-        end = random.of(['shows', 'shows', 'shows', ...Object.keys(actions)]);
+        end = random.of(['show', 'show', 'show', ...Object.keys(actions)]);
         if (k === 2 && random() < 0.08) {
-          end = 'floods';
+          end = 'flood';
           actions.ours(random);
           reportRows(Array.from({ length: MOST_EVENTS + random.of([0, 9]) }, () => [elapsed(), 'READ DISTANCE 5']));
         } else await actions[end](random);
@@ -3574,9 +3574,9 @@ const PARTS = {
         assertSame(run.readClock(), Math.min(MOST_MS, elapsed()), 'its clock');
         const older = runs.newestFirst[1];
         if (older) assertSame(older.readClock(), Math.min(MOST_MS, older.rows.at(-1)?.[0] ?? 0), 'the clock of the one before');
-        const notice = unread ? textOf('record_incomplete', { sensors: 'DISTANCE' }) : lacks && ran.text.includes('DISTANCE') ? textOf('record_no_readings') : '';
+        const notice = unread ? textOf('record_incomplete', { sensors: 'DISTANCE' }) : lacksReadings && ran.text.includes('DISTANCE') ? textOf('record_no_readings') : '';
         const place = page.byId('record_lacks');
-        if (['meets', 'ours', 'waits'].includes(end)) isTold = end !== 'meets'; // what a robot that is met tells is of the next run
+        if (['meet', 'ours', 'awaitButton'].includes(end)) isTold = end !== 'meet'; // what a robot that is met tells is of the next run
         if (isTold) assertSame([place.hidden, place.textContent], [!notice, notice], 'what was not read');
       }
       return { ends: [...acted], seen: [] };
@@ -3649,7 +3649,7 @@ const PARTS = {
       await later(delay());
       if (loses(request.do)) throw new Broken();
       isTold ||= state.over !== '';
-      return answers(state);
+      return responseOf(state);
     });
     const { Teacher } = await page.load('class/teacher.js');
     new Teacher({ python: { get ready() { return Promise.reject(new Broken()); }, ask() {} }, openRun: async () => {} });
@@ -3659,7 +3659,7 @@ const PARTS = {
     const [anew, more, end] = ['class_anew', 'class_anew', 'class_end'].map((key, k) => parts.filter((item) => item.type === 'button' && item.dataset['text'] === key)[k % 2]);
     const SURE_MS = 5000;
     const armed = new Map();
-    const presses = (button, requestName, detail = 1) => {
+    const press = (button, requestName, detail = 1) => {
       const isSure = armed.has(button) && now() - armed.get(button) < SURE_MS;
       const before = requests.filter((item) => item === requestName).length;
       button.dispatchEvent(Object.assign(new Event('click'), { detail }));
@@ -3675,7 +3675,7 @@ const PARTS = {
       requests = [];
       const ends = new Set();
       for (let k = isGood ? 0 : 2 + random.below(8); k > 0; k -= 1) {
-        const did = presses(random.of([anew, more]), 'class_anew', random() < 0.2 ? 2 : 1);
+        const did = press(random.of([anew, more]), 'class_anew', random() < 0.2 ? 2 : 1);
         ends.add(did ? 'sure' : 'once');
         await wait(random.of([1, 300, 3000, 4990, 5010, 8000]) + random.below(5));
       }
@@ -3683,7 +3683,7 @@ const PARTS = {
       loses = (requestName) => over !== '' && requestName !== 'class_over' && random() < 0.5; // `tsc studio` has ended
       delay = () => random.below(1500); // older answers come when it is known, if they come
       await wait(900 + random.below(400));
-      while (!presses(end, 'class_over')) await wait(100);
+      while (!press(end, 'class_over')) await wait(100);
       await wait(3000); // what was asked before is answered
       afterwards.length = 0;
       const seen = () => [document.documentElement.dataset['teacher'], page.byId('class').children[0]?.textContent];
@@ -3714,7 +3714,7 @@ const PARTS = {
     let hangs = () => false;
     let hasHung = false;
     let isHeard = true;
-    let goes = () => {};
+    let disconnect = () => {};
     const python = {
       async ask({ do: action, asked = [] }) {
         await later(delay());
@@ -3737,7 +3737,7 @@ const PARTS = {
           throw new ConnectionFailure('port_broken');
         }
         state = 'open';
-        goes = gone;
+        disconnect = gone;
       },
       async write() {
         if (hangs()) {
@@ -3766,7 +3766,7 @@ const PARTS = {
         const robot = own.robot = new DirectRobot(python, port(own), { onEvent() {}, onEnd: ({ reason }) => notes.push(reason) }, NO_KEYS);
         const meetOutcome = robot.connect('tinibot', 'en').then(() => 'met', ({ reason }) => reason);
         await wait(isGood ? 1000 : random.below(random.of([20, 300, 1200])));
-        if (!isGood && random() < 0.3 && state === 'open') goes();
+        if (!isGood && random() < 0.3 && state === 'open') disconnect();
         const wasOpening = state === 'opening';
         if (isGood) notes.push(isHeld, state);
         else ends.push(robot.isOver ? 'over' : state);
@@ -3808,41 +3808,41 @@ const PARTS = {
       delay = () => (isGood ? 5 : random.below(400));
       breaks = () => false;
       [sentRequests, bytes] = [[], []];
-      let hears = () => {};
-      const port = { isRadio: true, lossReason: 'port_gone', async open(onData) { hears = onData; }, async write() {}, async close() {} };
+      let receive = () => {};
+      const port = { isRadio: true, lossReason: 'port_gone', async open(onData) { receive = onData; }, async write() {}, async close() {} };
       const robot = new DirectRobot(python, port, { onEvent() {}, onEnd() {} }, NO_KEYS);
       robot.connect('tinibot', 'en').catch(() => {});
       await wait(1000);
       const came = [];
       const endedNumbers = [];
-      let asks = 0;
+      let askCount = 0;
       let stopped = 0; // asks before the newest STOP
       let held = 0; // the newest of what was held
       breaks = () => !isGood && random() < 0.02;
       const actions = {
-        asks() {
-          const number = (asks += 1);
+        ask() {
+          const number = (askCount += 1);
           robot.ask({ do: 'start', number }).then(() => endedNumbers.push(number), () => endedNumbers.push(number));
         },
-        presses() {
-          const number = (asks += 1);
+        press() {
+          const number = (askCount += 1);
           held = number;
           robot.press({ keys: number, number }).then(() => endedNumbers.push(number), () => endedNumbers.push(number));
         },
-        hears() {
+        hear() {
           came.push(came.length % 256);
-          hears(new Uint8Array(came.slice(-1)));
+          receive(new Uint8Array(came.slice(-1)));
         },
-        stops() {
+        stop() {
           robot.stop();
           sentRequests = [];
-          stopped = asks;
+          stopped = askCount;
         },
-        waits: () => {},
+        wait: () => {},
       };
       let end = '';
       for (let k = 3 + random.below(20); k > 0; k -= 1) {
-        end = random.of(['asks', ...Object.keys(actions)]);
+        end = random.of(['ask', ...Object.keys(actions)]);
         actions[end]();
         await wait(random.below(random.of([3, 300])));
         const old = sentRequests.find(({ number }) => number <= stopped);
@@ -3851,7 +3851,7 @@ const PARTS = {
         if (wrong) throw new Error(wrong);
       }
       await wait(3000);
-      if ([...endedNumbers].sort((one, other) => one - other).join() !== Array.from({ length: asks }, (_, k) => k + 1).join()) throw new Error(`${asks} were asked, and ${endedNumbers} have ended`);
+      if ([...endedNumbers].sort((one, other) => one - other).join() !== Array.from({ length: askCount }, (_, k) => k + 1).join()) throw new Error(`${askCount} were asked, and ${endedNumbers} have ended`);
       const heardNumbers = sentRequests.filter((item) => item.do === 'keys').map(({ number }) => number);
       if (!robot.isOver && held > stopped && heardNumbers.at(-1) !== held) throw new Error(`${held} is held, and the robot hears ${heardNumbers}`);
       if (!robot.isOver && `${bytes}` !== `${came}`) throw new Error(`${bytes} of ${came}`);
@@ -3875,7 +3875,7 @@ const PARTS = {
     let loses = () => false;
     let before = new Map(); // what the browser itself has fetched, which it may give again
     const nameOf = (request) => request.name ?? request;
-    const fetches = async (request) => {
+    const fetchFile = async (request) => {
       const name = nameOf(request);
       await later(5);
       if (loses()) throw new Broken();
@@ -3889,7 +3889,7 @@ const PARTS = {
         return [...all].find(([name]) => pathOf(name) === pathOf(nameOf(request)))?.[1];
       },
       async addAll(requests) {
-        const found = await Promise.all(requests.map(async (item) => [nameOf(item), await fetches(item)]));
+        const found = await Promise.all(requests.map(async (item) => [nameOf(item), await fetchFile(item)]));
         for (const [name, content] of found) all.set(name, content);
       },
     });
@@ -3907,11 +3907,11 @@ const PARTS = {
     const worker = (version) => {
       const handlers = new Map();
       const self = { addEventListener: (kind, callback) => handlers.set(kind, callback), clients: { claim: async () => { claimed = version; } } };
-      new Function('self', 'caches', 'fetch', 'Request', 'VERSION', 'FILES', 'LANGUAGES', source)(self, caches, fetches, Request, `v${version}`, FILES, LANGUAGES);
+      new Function('self', 'caches', 'fetch', 'Request', 'VERSION', 'FILES', 'LANGUAGES', source)(self, caches, fetchFile, Request, `v${version}`, FILES, LANGUAGES);
       return async (kind, more = {}) => {
         let done = null;
-        const takes = (promise) => { done = promise; };
-        handlers.get(kind)({ waitUntil: takes, respondWith: takes, ...more });
+        const take = (promise) => { done = promise; };
+        handlers.get(kind)({ waitUntil: take, respondWith: take, ...more });
         return done;
       };
     };
@@ -3922,7 +3922,7 @@ const PARTS = {
       let open = null; // the build that the page is of
       let version = 0;
       const languages = new Set(); // its languages
-      const settlesWell = async (promise) => {
+      const awaitSuccess = async (promise) => {
         let isDone = null;
         promise.then(() => { isDone = true; }, () => { isDone = false; });
         await wait(50);
@@ -3934,15 +3934,15 @@ const PARTS = {
         if (act === 'stranger') stores.set(`tiniscript-studio-v${served + 1}`, new Map(['./?', ...FILES, 'es.json'].map((name) => [name, 'a stranger has put it there'])));
         if (act === 'speaks') {
           const language = random.of(Object.keys(LANGUAGES));
-          if (await settlesWell(open('message', { data: language }))) languages.add(language);
+          if (await awaitSuccess(open('message', { data: language }))) languages.add(language);
         }
         if (act === 'builds') {
           served += 1;
           const next = worker(served);
-          const isThere = await settlesWell(next('install'));
+          const isThere = await awaitSuccess(next('install'));
           if (isThere) {
             [open, version] = [next, served];
-            await settlesWell(open('activate'));
+            await awaitSuccess(open('activate'));
             if (claimed !== version) throw new Error(`the open pages are those of ${claimed}`);
             if (`${[...stores.keys()].sort()}` !== `of others,tiniscript-studio-v${version}`) throw new Error(`it keeps ${[...stores.keys()]} of ${version}`);
           }
@@ -3978,21 +3978,21 @@ const PARTS = {
       const stores = ['localStorage', 'sessionStorage'];
       const places = ['tiniscript.a', 'tiniscript.b'];
       if (!isGood) for (const store of stores) window[store].setItem('theirs', store);
-      const puts = (count) => {
+      const put = (count) => {
         for (let k = count; k > 0; k -= 1) {
           const [store, place, value] = [random.of(stores), random.of(places), random.of(['', 'x', 'y'])];
           if (storeText(place, value, store)) expected.set(store + place, value);
           for (const item of stores) for (const other of places) if (loadText(other, item) !== (expected.get(item + other) ?? '')) throw new Error(`${loadText(other, item)} is at ${item} ${other}`);
         }
       };
-      puts(random.below(8));
+      put(random.below(8));
       if (isGood) return { ends: ['goes on'], seen: [] };
       forgetAll();
       expected.clear();
-      puts(random.below(8));
+      put(random.below(8));
       const left = stores.flatMap((store) => [...window[store]].map(([place]) => place));
       if (`${left}` !== 'theirs,theirs') throw new Error(`${left} is on the device`);
-      puts(random.below(8));
+      put(random.below(8));
       return { ends: ['forgets'], seen: [] };
     };
   },
@@ -4037,7 +4037,7 @@ const PARTS = {
   async writing() {
     let blocks = null;
     let wrong = '';
-    const fails = (sentence) => { wrong ||= sentence; };
+    const fail = (sentence) => { wrong ||= sentence; };
     const linesOf = (text) => text.split('\n').map((line) => line.trim()).filter(Boolean);
     const formOf = (text) => ({ body: linesOf(text).map((line) => ({ text: line, kind: line.includes('?') ? 'grey' : 'word', bodies: [] })) });
     const textOf = ({ body }) => body.map((item) => item.text).join('\n');
@@ -4047,43 +4047,43 @@ const PARTS = {
         isDragging = false;
         focusedLine = 1;
         has = {};
-        stands = 'L0';
+        position = 'L0';
         next = null; // where those stand that are shown next
         form = { body: [] };
         constructor(_, __, ___, page) {
           Object.assign(this, { page });
           blocks = this;
         }
-        get layoutText() { return this.stands; }
+        get layoutText() { return this.position; }
         set layoutText(layout) { this.next = layout; }
         get lines() { return this.form.body.map((_, line) => [`${line}`, line]); }
         readForm() {
-          if (this.isDragging) fails('blocks are read while one is in a hand');
+          if (this.isDragging) fail('blocks are read while one is in a hand');
           return { form: structuredClone(this.form), ids: [] };
         }
         show(form) {
-          if (this.isDragging) fails('a block is taken out of a hand');
-          if (textOf(form) !== textOf(formOf(editor.text))) fails('blocks are made of an older text');
-          if (form.body.some(({ kind }) => kind === 'grey') && editor.hasFocus && now() - asked_ms > 2500) fails('blocks are made of what somebody is typing');
+          if (this.isDragging) fail('a block is taken out of a hand');
+          if (textOf(form) !== textOf(formOf(editor.text))) fail('blocks are made of an older text');
+          if (form.body.some(({ kind }) => kind === 'grey') && editor.hasFocus && now() - asked_ms > 2500) fail('blocks are made of what somebody is typing');
           this.form = structuredClone(form);
           this.shown = textOf(form);
           this.setRanges();
           isTyped = hasTouched = false;
-          this.stands = this.next ?? this.stands;
+          this.position = this.next ?? this.position;
           this.next = null;
-          stood = this.stands;
+          stood = this.position;
           this.has = {};
         }
         levelOf() { return 'few'; }
         showFindings(findings) {
-          if (findings.some((item) => item.of !== editor.text)) fails('what is said at blocks is said of another text');
-          this.sees('findings', findings);
+          if (findings.some((item) => item.of !== editor.text)) fail('what is said at blocks is said of another text');
+          this.see('findings', findings);
         }
-        showBreakpoints(points) { this.sees('points', points); }
-        showRunning(ranges) { this.sees('running', ranges); }
-        showMates(places) { this.sees('mates', places); }
-        sees(what, value) {
-          if (!group && this.shown !== textOf(formOf(editor.text))) fails(`blocks of another text have ${what}`);
+        showBreakpoints(points) { this.see('points', points); }
+        showRunning(ranges) { this.see('running', ranges); }
+        showMates(places) { this.see('mates', places); }
+        see(what, value) {
+          if (!group && this.shown !== textOf(formOf(editor.text))) fail(`blocks of another text have ${what}`);
           this.has[what] = JSON.stringify(value);
         }
         async makePicture() { return textOf(this.form); }
@@ -4112,9 +4112,9 @@ const PARTS = {
         pageState.programText.set(text);
       },
       replaceByBlocks(text, { before, after }) {
-        if (text !== editor.text && isTyped && !group) fails('what was typed is lost');
-        if (text !== editor.text && text !== textOf(blocks.form)) fails(`blocks of before become text: ${text}`);
-        if (before !== stood || after !== blocks.layoutText) fails(`blocks go from ${before} to ${after}, and not from ${stood}`);
+        if (text !== editor.text && isTyped && !group) fail('what was typed is lost');
+        if (text !== editor.text && text !== textOf(blocks.form)) fail(`blocks of before become text: ${text}`);
+        if (before !== stood || after !== blocks.layoutText) fail(`blocks go from ${before} to ${after}, and not from ${stood}`);
         stood = after;
         past.push([editor.text, before, after]);
         if (text !== editor.text) {
@@ -4124,8 +4124,8 @@ const PARTS = {
         editor.put(text);
       },
       undo() {
-        if (blocks.isDragging) fails('undo comes while a block is in a hand');
-        if (hasTouched && !isTyped && !hasFailed) fails('undo comes before what was done to blocks');
+        if (blocks.isDragging) fail('undo comes while a block is in a hand');
+        if (hasTouched && !isTyped && !hasFailed) fail('undo comes before what was done to blocks');
         const [text, before, after] = past.pop() ?? [editor.text, '', ''];
         editor.put(text);
         if (text === blocks.shown) isTyped = false; // it is taken back
@@ -4135,7 +4135,7 @@ const PARTS = {
       },
       redo() {},
       onLayoutChange: (callback) => { layout = callback; },
-      toggleBreakpoint: () => { if (textOf(formOf(editor.text)) !== blocks.shown) fails('a breakpoint is set in another text'); },
+      toggleBreakpoint: () => { if (textOf(formOf(editor.text)) !== blocks.shown) fail('a breakpoint is set in another text'); },
       showRunning() {}, goTo() {},
     };
     await loadTexts(page);
@@ -4183,26 +4183,26 @@ const PARTS = {
         return { is_shown: editor.text === textOf(form), text: textOf(form), places: [] };
       },
       settle: () => later(delay()),
-      chooseLine() { if (group !== this) fails('a group that was left hears where somebody is'); },
+      chooseLine() { if (group !== this) fail('a group that was left hears where somebody is'); },
     });
     const views = new Views({ python, editor, work, storeCurrentWork() {}, tryAlone() {}, playTone() {} });
     const pane = page.byId('blocks');
     views.markReady();
     views.wake();
     for (let k = 0; !blocks && k < 500; k += 1) await settle();
-    const presses = (id) => page.byId(id).click();
+    const press = (id) => page.byId(id).click();
     let count = 0;
     let ownLines = []; // that have to stay in a group
     const actions = {
-      types(random) {
+      type(random) {
         editor.hasFocus = random() < 0.6;
         const line = `t${(count += 1)}${random() < 0.3 ? '?' : ''}`;
         isTyped = true;
         ownLines.push(line);
         editor.put(group || random() < 0.7 ? `${editor.text}\n${line}` : line);
-        if (pane.dataset['state'] !== 'stale') fails('blocks pass for those of a text that was typed since');
+        if (pane.dataset['state'] !== 'stale') fail('blocks pass for those of a text that was typed since');
       },
-      async builds(random) {
+      async build(random) {
         if (work.view !== 'blocks') return;
         const pressed = Object.assign(new Event('pointerdown'), { stopPropagation() { this.isStopped = true; } });
         editor.hasFocus = false;
@@ -4210,7 +4210,7 @@ const PARTS = {
         if (pressed.isStopped) return; // it is a moment too early
         for (let more = true; more; more = random() < 0.3) { // and takes the next one at once
           blocks.isDragging = true;
-          if (!group && random() < 0.2) presses('undo');
+          if (!group && random() < 0.2) press('undo');
           await wait(random.below(random.of([2, 120])));
           blocks.isDragging = false;
           const isNew = random() < 0.7, line = isNew ? `b${(count += 1)}` : blocks.form.body.pop()?.text;
@@ -4224,29 +4224,29 @@ const PARTS = {
           blocks.page.onChange();
         }
       },
-      moves() {
+      move() {
         if (work.view !== 'blocks') return;
-        blocks.stands = `L${(count += 1)}`;
+        blocks.position = `L${(count += 1)}`;
         undone = null;
         blocks.page.onChange();
       },
-      async undoes() {
+      async undo() {
         if (group) return;
         hasFailed = false; // it is tried again
-        presses('undo');
+        press('undo');
       },
-      views: (random) => presses(random.of(['view_blocks', 'view_text'])),
+      views: (random) => press(random.of(['view_blocks', 'view_text'])),
       robot() { // blocks of its own are made
         [ownLines, hasTouched] = [[], false];
         pageState.robotName.set('tinibot');
       },
-      speaks: () => pageState.language.set('en'),
-      checks: () => pageState.checkResult.set({ findings: [{ of: editor.text }] }),
+      changeLanguage: () => pageState.language.set('en'),
+      check: () => pageState.checkResult.set({ findings: [{ of: editor.text }] }),
       points: () => {
         pageState.breakpoints.set([{ line: (count += 1), column: 1 }]);
         blocks.page.toggleBreakpoint({});
       },
-      runs() {
+      run() {
         pageState.virtualRun.set({ ranges: [{ line: (count += 1) }], isHeld: false });
         pageState.fault.set(count % 2 ? { range: { line: count }, sentence: `f${count}` } : { range: null, sentence: '' });
       },
@@ -4257,27 +4257,27 @@ const PARTS = {
       async pictures() {
         const { view } = work;
         let picture;
-        views.makePicture().then((made) => { picture = made; }, fails);
+        views.makePicture().then((made) => { picture = made; }, fail);
         for (let k = 0; picture === undefined && k < 100; k += 1) await wait(100);
-        if (picture === undefined) fails('a picture never comes');
-        if (work.view !== view) fails(`a picture leaves ${view}`);
-        if (picture === null && !hasFailed) fails('there is no picture');
-        if (picture !== null && picture !== textOf(formOf(editor.text)) && !hasTouched) fails(`a picture of ${picture}`);
+        if (picture === undefined) fail('a picture never comes');
+        if (work.view !== view) fail(`a picture leaves ${view}`);
+        if (picture === null && !hasFailed) fail('there is no picture');
+        if (picture !== null && picture !== textOf(formOf(editor.text)) && !hasTouched) fail(`a picture of ${picture}`);
       },
-      joins() {
+      join() {
         if (group) return;
         [group, ownLines, hasTouched] = [makeGroup(), [], false];
         views.join(group);
       },
-      refuses: () => { isRefused = true; },
-      leaves() {
+      refuse: () => { isRefused = true; },
+      leave() {
         if (group) [group, ownLines, hasTouched] = [null, [], false];
         views.join(null);
       },
-      waits: () => {},
+      wait: () => {},
     };
-    const rests = async () => {
-      actions.checks();
+    const rest = async () => {
+      actions.check();
       await wait(4000);
       if (wrong) throw new Error(wrong);
       const text = textOf(formOf(editor.text));
@@ -4286,8 +4286,8 @@ const PARTS = {
         if (textOf(blocks.form) !== text && !page.byId('blocks_note').textContent) throw new Error('nobody says that blocks and text differ');
         hasFailed = false;
         asked_ms = now();
-        actions.undoes();
-        await rests();
+        actions.undo();
+        await rest();
         return;
       }
       if (textOf(blocks.form) !== text) throw new Error(`${textOf(blocks.form)} are the blocks of ${text}`);
@@ -4296,7 +4296,7 @@ const PARTS = {
       if (blocks.has.points !== JSON.stringify(pageState.breakpoints.value)) throw new Error('breakpoints are not at blocks');
       if (!group && blocks.ranged !== text) throw new Error(`their places are those of ${blocks.ranged}`);
       if (blocks.has.mates !== JSON.stringify(places)) throw new Error('others of the group are not at blocks');
-      if (undone !== null && blocks.stands !== undone) throw new Error(`blocks stand at ${blocks.stands}, and an undo has put them at ${undone}`);
+      if (undone !== null && blocks.position !== undone) throw new Error(`blocks stand at ${blocks.position}, and an undo has put them at ${undone}`);
       const { range, sentence } = pageState.fault.value;
       if (blocks.has.fault !== JSON.stringify([range, sentence])) throw new Error(`${blocks.has.fault} is the fault at blocks`);
       if (blocks.has.running !== JSON.stringify(pageState.virtualRun.value.ranges)) throw new Error('what runs is not marked at blocks');
@@ -4307,17 +4307,17 @@ const PARTS = {
       breaks = () => !isGood && !group && random() < 0.2;
       const ends = new Set();
       if (isGood) {
-        actions.leaves();
-        presses('view_blocks');
+        actions.leave();
+        press('view_blocks');
         editor.hasFocus = false;
         isTyped = true;
         hasFailed = false;
-        [blocks.stands, blocks.next, undone] = ['L0', null, null];
+        [blocks.position, blocks.next, undone] = ['L0', null, null];
         editor.put('first\nsecond');
         pageState.breakpoints.set([]);
         pageState.fault.set({ range: null, sentence: '' });
         pageState.virtualRun.set({ ranges: [], isHeld: false });
-        await rests();
+        await rest();
         past = [];
         ownLines = [];
         count = 0;
@@ -4325,21 +4325,21 @@ const PARTS = {
       }
       const all = [];
       asked_ms = now();
-      if (random() < 0.4) actions.joins();
+      if (random() < 0.4) actions.join();
       for (let k = 5 + random.below(15); k > 0; k -= 1) {
-        const act = random.of(['types', 'builds', 'builds', 'undoes', ...Object.keys(actions)]);
-        if (act === 'leaves' && random() < 0.7) continue;
-        if (!['types', 'checks', 'points', 'runs', 'mates', 'waits'].includes(act)) asked_ms = now();
+        const act = random.of(['type', 'build', 'build', 'undo', ...Object.keys(actions)]);
+        if (act === 'leave' && random() < 0.7) continue;
+        if (!['type', 'check', 'points', 'run', 'mates', 'wait'].includes(act)) asked_ms = now();
         await actions[act](random);
         ends.add(act);
-        if (!isGood && random() < 0.15) await rests();
+        if (!isGood && random() < 0.15) await rest();
         await wait(random.of([0, random.below(40), random.below(600)]));
         if (wrong) throw new Error(wrong);
         all.push([editor.text, textOf(blocks.form), pane.dataset['state']]);
       }
       breaks = () => false;
       if (hasFailed) ends.add('failed');
-      await rests();
+      await rest();
       return { ends: [...ends], seen: isGood && [all, past] };
     };
   },
@@ -4363,10 +4363,10 @@ const PARTS = {
     Object.assign(container, { clientWidth: 600, clientHeight: 400 });
     let hearers = 0; // of what is done in the pane, and in the whole page
     for (const item of [container, document, window, globalThis]) {
-      const { addEventListener: adds, removeEventListener: removes = () => {} } = item;
+      const { addEventListener: add, removeEventListener: remove = () => {} } = item;
       Object.assign(item, {
-        addEventListener(...args) { hearers += 1; return adds.apply(item, args); },
-        removeEventListener(...args) { hearers -= 1; return removes.apply(item, args); },
+        addEventListener(...args) { hearers += 1; return add.apply(item, args); },
+        removeEventListener(...args) { hearers -= 1; return remove.apply(item, args); },
       });
     }
     let changes = 0;
@@ -4416,7 +4416,7 @@ const PARTS = {
       let closed = ''; // the message that somebody has put away
       const line = () => 1 + random.below(Math.max(1, flat(form.body).length));
       const at = (count) => Array.from({ length: random.below(count + 1) }, () => ({ line: line(), column: 1 }));
-      const says = {
+      const say = {
         findings: () => blocks.showFindings(shownState.findings),
         running: () => blocks.showRunning(shownState.running),
         fault: () => blocks.showFault(shownState.fault, shownState.fault ? `why ${shownState.fault.line}` : ''),
@@ -4424,28 +4424,28 @@ const PARTS = {
         mates: () => blocks.showMates(shownState.mates),
       };
       const actions = {
-        shows() {
+        show() {
           if (random() < 0.5) form = makeForm();
           blocks.show(form);
           isAlone = '';
-          for (const name of Object.keys(says)) says[name](); // as views.js does
+          for (const name of Object.keys(say)) say[name](); // as views.js does
         },
         findings() {
           shownState.findings = at(2).map((place) => ({ ...place, severity: random.of(['mistake', 'warning']), message: 'm', on_blocks: { message: `at ${place.line}`, fix: '', spoken: {} } }));
-          says.findings();
+          say.findings();
         },
-        running() { shownState.running = at(2); says.running(); },
-        fault() { [shownState.fault = null] = at(1); says.fault(); },
-        points() { shownState.points = at(2); says.points(); },
-        mates() { shownState.mates = at(2).map((place) => ({ ...place, color: '#000', said: 'Luz' })); says.mates(); },
+        running() { shownState.running = at(2); say.running(); },
+        fault() { [shownState.fault = null] = at(1); say.fault(); },
+        points() { shownState.points = at(2); say.points(); },
+        mates() { shownState.mates = at(2).map((place) => ({ ...place, color: '#000', said: 'Luz' })); say.mates(); },
         level() { blocks.setLevel(shownState.level = random.of(['few', 'usual', 'all'])); },
         robot() { blocks.setRobot(shownState.robot = random.of(['tinibot', 'liner'])); },
-        speaks() {
+        changeLanguage() {
           blocks.updateLanguage();
           isAlone = '';
-          for (const name of Object.keys(says)) says[name]();
+          for (const name of Object.keys(say)) say[name]();
         },
-        searches() { // what is typed is looked for until somebody is at the blocks, at a group, or has given up
+        search() { // what is typed is looked for until somebody is at the blocks, at a group, or has given up
           const input = container.querySelectorAll('.search')[0].children[1];
           const list = workspace().getFlyout();
           const focusAt = (className) => {
@@ -4466,7 +4466,7 @@ const PARTS = {
           let typed = '', searchText = '';
           for (let k = 4 + random.below(20); k > 0; k -= 1) {
             const did = random.of(['types', 'types', 'comes back', 'blocks', 'group', 'list', 'Escape', 'Enter', 'x']);
-            const goes = () => { [typed, searchText] = ['', '']; };
+            const clear = () => { [typed, searchText] = ['', '']; };
             if (did === 'types') {
               input.value = typed = random.of(['', ' ', 'wait', 'qqqq']);
               seen.group = 'a group';
@@ -4479,7 +4479,7 @@ const PARTS = {
             } else if (did === 'list') focusAt('blocklyFlyout');
             else if (did === 'blocks') {
               focusAt('blocklyBlock');
-              if (typed) goes();
+              if (typed) clear();
             } else if (did === 'group') {
               focusAt('blocklyToolbox');
               typed = '';
@@ -4488,7 +4488,7 @@ const PARTS = {
               searchText = '';
             } else if (did === 'Escape') {
               key(did);
-              goes();
+              clear();
               if (seen.focused !== workspace()) throw new Error('the focus is not at the blocks');
               seen.focused = null;
             } else {
@@ -4496,31 +4496,31 @@ const PARTS = {
               if (Boolean(seen.focused) !== (did === 'Enter' && searchText !== '')) throw new Error(`with ${searchText} the focus is ${seen.focused ? '' : 'not '}at what was found`);
               seen.focused = null;
             }
-            if (input.value !== typed) throw new Error(`after it ${did} ${input.value} is looked for in place of ${typed}`);
+            if (input.value !== typed) throw new Error(`after ${did} ${input.value} is looked for in place of ${typed}`);
             const foundKinds = list.shown?.map(({ kind }) => kind);
-            if (!searchText !== !foundKinds || (searchText && (foundKinds.includes('label') !== (searchText === 'qqqq') || !foundKinds.length))) throw new Error(`after it ${did} ${foundKinds} is found of ${searchText}`);
+            if (!searchText !== !foundKinds || (searchText && (foundKinds.includes('label') !== (searchText === 'qqqq') || !foundKinds.length))) throw new Error(`after ${did} ${foundKinds} is found of ${searchText}`);
           }
           input.value = '';
           list.hide();
         },
-        resizes: () => blocks.resize(),
-        begins: () => blocks.beginProgram(),
-        scrolls() {
+        resize: () => blocks.resize(),
+        begin: () => blocks.beginProgram(),
+        scroll() {
           container.dispatchEvent(new Event('wheel'));
           workspace().scroll(-random.below(300), -random.below(300));
         },
-        stays() { // what is seen, whatever is shown anew
-          actions.scrolls();
+        keepView() { // what is seen, whatever is shown anew
+          actions.scroll();
           const before = viewOf();
           blocks.show(form);
           isAlone = '';
-          for (const name of Object.keys(says)) if (name !== 'running') says[name]();
+          for (const name of Object.keys(say)) if (name !== 'running') say[name]();
           shownState.running = [];
           if (`${viewOf()}` !== `${before}`) throw new Error(`the view is ${viewOf()}, and was ${before}`);
-          actions.speaks();
+          actions.changeLanguage();
           if (`${viewOf()}` !== `${before}`) throw new Error(`in another language the view is ${viewOf()}, and was ${before}`);
         },
-        focuses() { // which stays at its block
+        focus() { // which stays at its block
           const { lines } = blocks;
           if (!lines.length) return;
           const number = random.below(lines.length);
@@ -4530,11 +4530,11 @@ const PARTS = {
           if (toggled.at(-1) !== lines[number][1] || blocks.focusedLine !== lines[number][1]) throw new Error(`a breakpoint is set at ${toggled.at(-1)}, and the focus is at ${lines[number][1]}`);
           blocks.show(form);
           isAlone = '';
-          for (const name of Object.keys(says)) says[name]();
+          for (const name of Object.keys(say)) say[name]();
           if (blocks.focusedLine !== lines[number][1]) throw new Error(`the focus goes to ${blocks.focusedLine} from ${lines[number][1]}`);
           document.activeElement = document.body;
         },
-        puts() { // what hangs on nothing stays where it was put
+        put() { // what hangs on nothing stays where it was put
           const loose = workspace().getTopBlocks(false).find(({ type }) => !['program', 'def'].includes(type));
           if (!loose) return;
           const place = { x: random.below(300), y: random.below(200) };
@@ -4548,10 +4548,10 @@ const PARTS = {
           }
           blocks.show(form);
           isAlone = '';
-          for (const name of Object.keys(says)) says[name]();
+          for (const name of Object.keys(say)) say[name]();
           if (blocks.layoutText !== before) throw new Error(`blocks stand at ${blocks.layoutText} in place of ${before}`);
         },
-        async names() { // of the values of one's own word
+        async nameValues() { // of the values of one's own word
           const def = workspace().getBlocksByType('def')[0];
           if (!def) return;
           const before = changes;
@@ -4562,43 +4562,43 @@ const PARTS = {
             const labels = def.names().map((_, k) => call.getFieldValue(`L${k}`));
             if (changes > before && (call.count !== def.names().length || `${labels}` !== `${def.names()}`)) throw new Error(`a call has ${call.count}, ${labels} of ${def.names()}`);
           }
-          takes();
+          takeBlocks();
         },
-        async runs() {
+        async run() {
           shownState.running = [];
-          says.running();
+          say.running();
           await wait(3000);
-          if (random() < 0.5) actions.scrolls();
+          if (random() < 0.5) actions.scroll();
           let before = viewOf(), isLeft = false;
           for (let k = random.below(6); k > 0; k -= 1) {
             shownState.running = [{ line: line(), column: 1 }];
-            says.running();
+            say.running();
             const box = workspace().getBlockById(blocks.lines[innermost(shownState.running[0])]?.[0])?.getBoundingRectangleWithoutChildren();
-            const isSeen = () => {
+            const checkSeen = () => {
               const { left, top, width, height } = workspace().getMetricsManager().getViewMetrics(true);
               if (box && !isLeft && (box.left < left || box.right > left + width || box.top < top || box.bottom > top + height)) throw new Error(`what runs is at ${box.left} ${box.top}, and ${[left, top, width, height]} is seen`);
             };
-            isSeen();
+            checkSeen();
             if (box && random() < 0.2) {
-              actions.scrolls();
+              actions.scroll();
               [before, isLeft] = [viewOf(), true];
             }
             await wait(random.below(1500));
-            isSeen();
+            checkSeen();
             if (random() < 0.5) continue;
             blocks.showRunning([]); // for a moment
             await wait(random.below(500));
           }
           shownState.running = [];
-          says.running();
+          say.running();
           await wait(3000);
           if (`${viewOf()}` !== `${before}`) throw new Error(`after a run the view is ${viewOf()}, and was ${before}`);
         },
-        async grows() { // the robot, and is small again
+        async grow() { // the robot, and is small again
           shownState.running = [];
-          says.running();
+          say.running();
           await wait(3000);
-          actions.scrolls();
+          actions.scroll();
           const before = viewOf(), { room } = workspace();
           const seenNow = (slack) => workspace().getTopBlocks(false).filter((top) => viewRect(slack).contains(...(({ left, top: y }) => [left, y])(top.getBoundingRectangle()))).length;
           const count = seenNow(0);
@@ -4611,31 +4611,31 @@ const PARTS = {
           blocks.resize();
           if (`${viewOf()}` !== `${before}`) throw new Error(`beside a small robot the view is ${viewOf()}, and was ${before}`);
         },
-        async closes() { // a message, which is said again only where the mistake is made again
+        async close() { // a message, which is said again only where the mistake is made again
           const wrong = () => all().find((item) => item.classes?.has('wrong'));
           const openOf = (item) => Boolean(item?.getIcon(blockly.icons.WarningIcon.TYPE)?.getBubble());
-          const tells = async (findings) => {
+          const tell = async (findings) => {
             shownState.findings = findings;
-            says.findings();
+            say.findings();
             await wait(10);
           };
           shownState.fault = null;
-          says.fault();
-          await tells([]);
+          say.fault();
+          await tell([]);
           const mistake = [{ line: 1, column: 1, severity: 'mistake', message: 'm', on_blocks: { message: `${random()}`, fix: '', spoken: {} } }];
           workspace().scroll(0, 0);
           for (let k = 2; k > 0; k -= 1) {
-            await tells(mistake);
+            await tell(mistake);
             if (!wrong() || wrong().type === 'program') return;
             if (!openOf(wrong())) throw new Error('nobody says what is wrong');
             await wrong().getIcon(blockly.icons.WarningIcon.TYPE).setBubbleVisible(false);
             workspace().fireChangeListener(Object.assign(Object.create(blockly.Events.BubbleOpen.prototype), { type: 'bubble_open', isUiEvent: true, isOpen: false, blockId: wrong().id }));
-            await tells(mistake);
+            await tell(mistake);
             if (openOf(wrong())) throw new Error('what was put away is said again');
-            await tells([]);
+            await tell([]);
           }
         },
-        async edits() {
+        async edit() {
           const moves = all().filter(({ type }) => type === 'move');
           if (!moves.length) return;
           const before = changes;
@@ -4643,33 +4643,33 @@ const PARTS = {
           move.setFieldValue(move.getFieldValue('WORD') === 'L' ? 'R' : 'L', 'WORD');
           await wait(100);
           if (changes === before) throw new Error('nobody hears of a change of the blocks');
-          takes();
+          takeBlocks();
         },
-        tries() {
+        tryAlone() {
           const [first] = all().filter(({ type }) => type !== 'program');
           if (!first) return;
           tried?.();
           workspace().fireChangeListener?.(Object.assign(Object.create(blockly.Events.Click.prototype), { type: 'click', isUiEvent: true, targetType: 'block', blockId: first.id }));
           isAlone = first.id;
         },
-        async ends() {
+        async end() {
           tried?.();
           await settle();
           isAlone = '';
         },
-        goes: () => blocks.goTo({ line: line(), column: 1 }),
-        waits: () => wait(1500),
+        goTo: () => blocks.goTo({ line: line(), column: 1 }),
+        wait: () => wait(1500),
       };
       const viewOf = () => [workspace().scale, workspace().scrollX, workspace().scrollY].map((item) => Math.round(100 * item) / 100);
       const viewRect = (slack) => (({ left, top, width, height }) => new blockly.utils.Rect(top - slack, top + height + slack, left - slack, left + width + slack))(workspace().getMetricsManager().getViewMetrics(true));
       /** What somebody has done is the program now. */
-      const takes = () => {
+      const takeBlocks = () => {
         const foundKinds = blocks.readForm();
         form = foundKinds.form;
         blocks.setRanges(foundKinds.ids, flat(form.body).map((item, k) => (item.place = [k + 1, 1, k + 1, 9])));
         for (const name of ['running', 'fault', 'points', 'findings', 'mates']) {
           shownState[name] = name === 'fault' ? null : [];
-          says[name]();
+          say[name]();
         }
       };
       const wordsOf = (item) => [...item.classes ?? []].sort().join(' ');
@@ -4677,7 +4677,7 @@ const PARTS = {
         const bodies = flat(form.body), foundKinds = bodies.findLastIndex(({ place: [first, , last] }) => place.line >= first && place.line <= last);
         return foundKinds;
       };
-      const checks = (act) => {
+      const check = (act) => {
         const { ids } = blocks.readForm(), list = flat(form.body);
         const idAt = (place) => ids[innermost(place)];
         const assertSame = (actual, expected, label) => { if (JSON.stringify(actual) !== JSON.stringify(expected)) throw new Error(`after ${act} ${label}: ${JSON.stringify(actual)} in place of ${JSON.stringify(expected)}`); };
@@ -4685,13 +4685,13 @@ const PARTS = {
         assertSame(blocks.lines.length, list.length, 'their lines');
         assertSame(hearers, firstHearers, 'who hears of what is done there');
         const wanted = new Map();
-        const looks = (id, look) => id && wanted.set(id, [...new Set([...wanted.get(id) ?? [], look])]);
-        for (const place of shownState.running) looks(idAt(place), 'running');
-        for (const place of shownState.points) looks(idAt(place), 'breakpoint');
-        if (shownState.fault) looks(idAt(shownState.fault), 'fault');
-        for (const item of shownState.findings) if (item.severity === 'mistake') looks(idAt(item), 'wrong');
-        if (isAlone) looks(isAlone, 'alone');
-        for (const top of workspace().getTopBlocks(false)) if (!['program', 'def'].includes(top.type)) looks(top.id, 'loose');
+        const wantLook = (id, look) => id && wanted.set(id, [...new Set([...wanted.get(id) ?? [], look])]);
+        for (const place of shownState.running) wantLook(idAt(place), 'running');
+        for (const place of shownState.points) wantLook(idAt(place), 'breakpoint');
+        if (shownState.fault) wantLook(idAt(shownState.fault), 'fault');
+        for (const item of shownState.findings) if (item.severity === 'mistake') wantLook(idAt(item), 'wrong');
+        if (isAlone) wantLook(isAlone, 'alone');
+        for (const top of workspace().getTopBlocks(false)) if (!['program', 'def'].includes(top.type)) wantLook(top.id, 'loose');
         for (const item of all()) {
           if (item.type === 'program') continue;
           const inBody = flat(list.filter((_, k) => ids[k] === item.id)).length, count = item.type === 'def' ? 1 : inBody;
@@ -4715,23 +4715,23 @@ const PARTS = {
         blocks.beginProgram();
         actions.level();
         actions.robot();
-        actions.shows();
+        actions.show();
         for (const name of ['running', 'fault', 'points', 'findings', 'mates']) actions[name]();
         await wait(3000);
-      } else actions.shows();
+      } else actions.show();
       const noted = [];
       for (let k = 4 + random.below(10); k > 0; k -= 1) {
-        const act = random.of([...Object.keys(actions), 'shows', 'running', 'running']);
+        const act = random.of([...Object.keys(actions), 'show', 'running', 'running']);
         ends.add(act);
         const before = changes;
         await actions[act]();
         await wait(random.of([0, random.below(900)]));
-        if (!['edits', 'names', 'puts'].includes(act) && changes !== before) throw new Error(`${act} is told as a change`);
-        checks(act);
+        if (!['edit', 'nameValues', 'put'].includes(act) && changes !== before) throw new Error(`${act} is told as a change`);
+        check(act);
         noted.push([act, workspace().scale, workspace().scrollX, workspace().scrollY, JSON.parse(blocks.layoutText).length, structuredClone(workspace().list)]);
       }
       shownState.running = [];
-      says.running();
+      say.running();
       await wait(3000);
       return { ends: [...ends], seen: isGood && noted };
     };
@@ -4747,14 +4747,14 @@ const PARTS = {
     const root = document.documentElement;
     let delay = () => 5;
     document.fullscreenElement = null;
-    const fills = async (part) => {
+    const fillScreen = async (part) => {
       await later(delay());
       if (document.fullscreenElement === part) return;
       document.fullscreenElement = part;
       document.dispatchEvent(new Event('fullscreenchange'));
     };
-    root.requestFullscreen = () => fills(root);
-    document.exitFullscreen = () => fills(null);
+    root.requestFullscreen = () => fillScreen(root);
+    document.exitFullscreen = () => fillScreen(null);
     let camera = '', stops = 0, isOver = false; // the mouse the program
     document.querySelector = (selector) => (isOver && selector === '#writing:hover' ? writing : null);
     page.byId('runs_open').parent = new (page.byId('runs_open').constructor)();
@@ -4762,53 +4762,53 @@ const PARTS = {
     const [cameraButton, fullButton] = page.byId('runs_open').parent.children;
     const [writing, lessons] = ['writing', 'lessons'].map(page.byId);
     const viewState = { full: false, big: false, held: false, whole: false, turns: 0 };
-    const shrinks = () => { viewState.big &&= ['running', 'paused'].includes(root.dataset['phase']); };
+    const shrink = () => { viewState.big &&= ['running', 'paused'].includes(root.dataset['phase']); };
     const key = (name, isTyped = false) => dispatchEvent(Object.assign(new Event('keydown'), { key: name, composedPath: () => (isTyped ? [Object.assign(document.createElement('textarea'))] : []) }));
-    const moves = () => dispatchEvent(Object.assign(new Event('pointermove'), { pointerType: 'mouse', buttons: 0 }));
+    const move = () => dispatchEvent(Object.assign(new Event('pointermove'), { pointerType: 'mouse', buttons: 0 }));
     let sides = 0;
     return async (random) => {
       delay = () => random.below(30);
       const actions = {
-        runs() { root.dataset['phase'] = 'running'; stage.enlarge(); viewState.big = true; viewState.whole = false; },
-        pauses() { if (root.dataset['phase'] === 'running') root.dataset['phase'] = 'paused'; },
-        async ends() {
+        run() { root.dataset['phase'] = 'running'; stage.enlarge(); viewState.big = true; viewState.whole = false; },
+        pause() { if (root.dataset['phase'] === 'running') root.dataset['phase'] = 'paused'; },
+        async end() {
           root.dataset['phase'] = 'ended';
           isOver = random() < 0.5;
-          moves();
+          move();
           stage.onRunEnd();
           await wait(250);
           if (isOver || pageState.sideId.value === 'side_lessons') viewState.big = false; // its text is read again
           isOver = false;
         },
-        async rests() { // a mouse
+        async rest() { // a mouse
           isOver = true;
           for (const ms of [10, 150, 150]) {
-            moves();
+            move();
             writing.dispatchEvent(new Event('pointermove'));
             await wait(ms);
             if (('big' in root.dataset) !== viewState.big) throw new Error('the room changes under a mouse that moves');
           }
           await wait(100);
-          shrinks();
+          shrink();
           isOver = false;
         },
         screens: () => pageState.screen.set(random.of(['studio', 'other'])),
-        types() { writing.dispatchEvent(new Event('focusin')); if (!viewState.held) shrinks(); },
-        holds() { writing.dispatchEvent(new Event('pointerdown')); viewState.held = true; },
-        async lets() {
+        type() { writing.dispatchEvent(new Event('focusin')); if (!viewState.held) shrink(); },
+        hold() { writing.dispatchEvent(new Event('pointerdown')); viewState.held = true; },
+        async letGo() {
           dispatchEvent(new Event(random.of(['pointerup', 'pointercancel'])));
           if (viewState.held && root.dataset['big'] !== undefined && !viewState.big) throw new Error('it is small before a press is over');
           await wait(1);
-          if (viewState.held) shrinks();
+          if (viewState.held) shrink();
           viewState.held = false;
         },
-        reads() { lessons.dispatchEvent(new Event('click')); viewState.big = false; },
+        read() { lessons.dispatchEvent(new Event('click')); viewState.big = false; },
         worlds() {
           stage.showWorld();
           viewState.whole = true;
-          if (pageState.sideId.value === 'side_lessons') shrinks();
+          if (pageState.sideId.value === 'side_lessons') shrink();
         },
-        judges() { stage.shrink(); shrinks(); },
+        judge() { stage.shrink(); shrink(); },
         home() {
           pageState.screen.set('start');
           pageState.screen.set('studio');
@@ -4819,29 +4819,29 @@ const PARTS = {
           pageState.sideId.set(pageState.sideId.value !== 'side_lessons' && random() < 0.5 ? 'side_lessons' : `side ${(sides += 1)}`);
           viewState.full = false;
         },
-        fills() { if (random() < 0.5) fullButton.click(); else key('f'); viewState.full = !viewState.full; },
+        fill() { if (random() < 0.5) fullButton.click(); else key('f'); viewState.full = !viewState.full; },
         letter: () => key('f', true),
         escape() { key('Escape'); viewState.full = false; },
-        async leaves() { // the browser's Escape, of which the page hears nothing else
+        async leave() { // the browser's Escape, of which the page hears nothing else
           await wait(100);
           const before = stops, wasFilled = document.fullscreenElement !== null;
-          fills(null);
+          fillScreen(null);
           await wait(100);
           if (stops - before !== Number(wasFilled && viewState.full)) throw new Error(`${stops - before} stops are pressed by leaving`);
           if (wasFilled) viewState.full = false;
         },
-        turns() { const before = camera; cameraButton.click(); viewState.turns += 1; if (camera === before) throw new Error('the camera stays'); },
-        async peeks() {
+        turn() { const before = camera; cameraButton.click(); viewState.turns += 1; if (camera === before) throw new Error('the camera stays'); },
+        async peek() {
           const endPeek = stage.peek();
           if (random() < 0.5) endPeek();
           await wait(random.below(2000));
-          const isNewest = stage.peek();
+          const endNewest = stage.peek();
           await wait(1600);
           if (!('peek' in root.dataset)) throw new Error('the robot is not in its corner');
           endPeek();
-          isNewest();
+          endNewest();
         },
-        waits: () => wait(300),
+        wait: () => wait(300),
       };
       const ends = new Set();
       for (let k = 10 + random.below(30); k > 0; k -= 1) {
@@ -4855,7 +4855,7 @@ const PARTS = {
         await wait(200);
         if (Boolean(document.fullscreenElement) !== viewState.full) throw new Error(`after ${act} the screen is filled`);
       }
-      await actions.lets();
+      await actions.letGo();
       await wait(9000);
       if ('peek' in root.dataset) throw new Error('the robot stays in its corner');
       return { ends: [...ends], seen: [] };
@@ -4877,21 +4877,21 @@ const PARTS = {
     page.byId('run').addEventListener('click', () => { virtual += 1; });
     const root = document.documentElement;
     const pageInputs = { image: '00', count: 0, isAway: null };
-    const says = (image, count) => {
+    const say = (image, count) => {
       Object.assign(pageInputs, { image, count }, !count && { isAway: null });
       pageState.checkResult.set({ image, findings: Array(count).fill({}) });
     };
     const isAway = () => pageInputs.isAway ?? (pageState.view.value === 'blocks' && pageInputs.image !== '' && pageState.checkResult.value !== null);
-    const turns = (isPhone) => {
+    const turn = (isPhone) => {
       phone.matches = isPhone;
       phone.dispatchEvent(new Event('change'));
     };
     const seen = () => [page.byId('writing').dataset.sheet, page.byId('sheet').hidden, page.byId('sheet').attributes['aria-expanded'], root.dataset.half, page.byId('other_name').textContent, 'phone' in root.dataset, page.byId('bar').children.length, real, virtual];
     const actions = {
-      wrong: () => says('', 1),
-      warned: () => says('00', 1),
-      right: () => says('00', 0),
-      checks: () => pageState.checkResult.set(null),
+      wrong: () => say('', 1),
+      warned: () => say('00', 1),
+      right: () => say('00', 0),
+      check: () => pageState.checkResult.set(null),
       sheet() {
         if (page.byId('sheet').hidden) return;
         pageInputs.isAway = !isAway();
@@ -4907,17 +4907,17 @@ const PARTS = {
         if (`${[root.dataset.half, root.dataset.side]}` !== `${expected}`) throw new Error(`${[root.dataset.half, root.dataset.side]} is seen in place of ${expected}`);
       },
       other: () => page.byId('other').click(),
-      speaks: () => pageState.language.set('en'),
+      changeLanguage: () => pageState.language.set('en'),
       view: (random) => pageState.view.set(random.of(['blocks', 'text'])),
       side: (random) => showSide(random.of(['side_virtual', 'side_lessons', 'side_real'])),
-      turns: (random) => turns(random() < 0.7),
+      turn: (random) => turn(random() < 0.7),
     };
-    says('00', 0);
+    say('00', 0);
     return async (random, isGood) => {
       if (isGood) {
-        turns(true);
+        turn(true);
         for (const part of [page.byId('controls'), page.byId('bar')]) part.children = [];
-        says('00', 0);
+        say('00', 0);
         pageState.view.set('blocks');
         showSide('side_virtual');
         if (root.dataset.half !== 'program') page.byId('other').click();
@@ -4929,7 +4929,7 @@ const PARTS = {
         ends.add(act);
         actions[act](random);
         all.push([act, seen()]);
-        if (act !== 'checks' && pageState.checkResult.value && (page.byId('writing').dataset.sheet === 'away') !== isAway()) throw new Error(`after ${act} the sheet is ${page.byId('writing').dataset.sheet}`);
+        if (act !== 'check' && pageState.checkResult.value && (page.byId('writing').dataset.sheet === 'away') !== isAway()) throw new Error(`after ${act} the sheet is ${page.byId('writing').dataset.sheet}`);
         if (page.byId('sheet').hidden !== !pageInputs.count) throw new Error('there is no way to what is said, or one to nothing');
         if ('phone' in root.dataset !== phone.matches || (phone.matches && page.byId('run').parent !== page.byId('bar'))) throw new Error('Run is out of reach');
       }
@@ -4982,12 +4982,12 @@ const PARTS = {
         const tokens = [];
         replaceFetch(async (path, { headers, body }) => {
           tokens.push(headers['X-TiniScript-Token']);
-          if (path !== './enter') return answers({ ports: [] });
+          if (path !== './enter') return responseOf({ ports: [] });
           entryCount += 1;
           if (JSON.parse(body).code !== code || headers['X-TiniScript-Token']) throw new Error('another code is told');
           await later(5);
           if (ends === 'lost') throw new Broken();
-          return answers(ends === 'used' ? { failure: 'host_used' } : { token: `token ${code}` });
+          return responseOf(ends === 'used' ? { failure: 'host_used' } : { token: `token ${code}` });
         });
         let host = null;
         page.load('robot/host.js').then((found) => { host = found; });
@@ -5076,7 +5076,7 @@ const PARTS = {
         pause: () => page.byId('pause').disabled || page.byId('pause').click(),
         stop: () => page.byId('stop').click(),
         escape: () => dispatchEvent(Object.assign(new Event('keydown'), { key: 'Escape' })),
-        edits: () => pageState.checkResult.set(null),
+        edit: () => pageState.checkResult.set(null),
         points: () => pageState.breakpoints.set([1, 2].map((line) => ({ line, column: 1, point: {} }))),
       };
       let end = '';
@@ -5098,7 +5098,7 @@ const PARTS = {
       if (startsAfterStop) throw new Error('it starts after a STOP');
       if (dataset['phase'] === 'running' || dataset['phase'] === 'paused') throw new Error('it goes on');
       let open = 0;
-      const tries = async (isToRun) => {
+      const tryBlock = async (isToRun) => {
         const before = begun;
         open += 1;
         panel.tryAlone('F(1)', true, () => {}).then(() => { open -= 1; });
@@ -5109,7 +5109,7 @@ const PARTS = {
         if ((begun > before) !== isToRun) throw new Error(isToRun ? 'a block that is tried does not run' : 'it runs in the place of the whole program');
       };
       wantsRun = true;
-      await tries(true);
+      await tryBlock(true);
       panel.play({ lesson: 1, seed: 1, until_ms: 900 });
       await wait(600);
       ways.points();
@@ -5118,15 +5118,15 @@ const PARTS = {
       ways.stop();
       await wait(1500);
       if (open) throw new Error('a block that was tried never ends');
-      ways.edits();
+      ways.edit();
       ways.run();
       await wait(8000); // until its end
-      await tries(true);
+      await tryBlock(true);
       await wait(8000);
       robot = runningRobot(random);
       ways.run();
       await wait(500);
-      if (dataset['phase'] === 'running') await tries(false);
+      if (dataset['phase'] === 'running') await tryBlock(false);
       ways.stop();
       wantsRun = false;
       await wait(1500);
@@ -5144,7 +5144,7 @@ const REAL_SIDE = {
   fetchPorts: async () => [],
 };
 
-const answers = (found) => ({ ok: true, status: 200, json: async () => found });
+const responseOf = (found) => ({ ok: true, status: 200, json: async () => found });
 
 /** @returns one that runs */
 function runningRobot(random) {
