@@ -33,7 +33,7 @@ export class EditorView {
     this.lines = {};
     this.#isUpdating = true;
     const update = { view: this, state: this.state, startState, transactions: [transaction], changes: transaction.changes, docChanged: transaction.docChanged };
-    for (const hears of this.state.facet(codemirror.EditorView.updateListener)) hears(update);
+    for (const listener of this.state.facet(codemirror.EditorView.updateListener)) listener(update);
     this.#isUpdating = false;
   };
 

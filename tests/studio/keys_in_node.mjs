@@ -5,7 +5,7 @@ import { freshPage, later, loadTexts, now, replaceFetch, replaceNavigator, wait,
 
 const sent = [];
 const keep = (asked) => sent.push(...asked.filter((item) => item.do === 'keys').map(({ y }) => [now(), y]));
-const answers = (value) => ({ ok: true, status: 200, json: async () => value });
+const responseOf = (value) => ({ ok: true, status: 200, json: async () => value });
 const heard = { onEvent() {}, onEnd() {} };
 replaceNavigator({});
 const page = freshPage();
@@ -19,7 +19,7 @@ const ways = {
       if (request.do === 'beat') beats += 1;
       keep(request.asked ?? []);
       await later(1);
-      return answers({ news: request.do === 'beat' && beats === 1 ? [{ number: 1, connected: {} }] : [] });
+      return responseOf({ news: request.do === 'beat' && beats === 1 ? [{ number: 1, connected: {} }] : [] });
     });
     const { HostRobot } = await page.load('robot/host.js');
     const robot = new HostRobot(heard);

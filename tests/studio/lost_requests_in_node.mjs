@@ -9,22 +9,22 @@ let now_ms = 0;
 let timers = [];
 let server = null;
 const setLater = (callback, ms = 0) => {
-  const timer = { at_ms: now_ms + ms, does: callback };
+  const timer = { at_ms: now_ms + ms, callback };
   timers.push(timer);
   return timer;
 };
-const stands = (name, value) => Object.defineProperty(globalThis, name, { value, configurable: true, writable: true });
+const setGlobal = (name, value) => Object.defineProperty(globalThis, name, { value, configurable: true, writable: true });
 globalThis.setTimeout = setLater;
 globalThis.clearTimeout = (timer) => {
   timers = timers.filter((item) => item !== timer);
 };
 const store = { getItem: () => 'a token', setItem() {}, removeItem() {} };
-stands('window', { setTimeout: setLater, sessionStorage: store, localStorage: store });
-stands('document', { documentElement: { dataset: {} } });
-stands('location', { hash: '', pathname: '/', search: '', href: 'http://127.0.0.1/' });
-stands('performance', { now: () => now_ms });
+setGlobal('window', { setTimeout: setLater, sessionStorage: store, localStorage: store });
+setGlobal('document', { documentElement: { dataset: {} } });
+setGlobal('location', { hash: '', pathname: '/', search: '', href: 'http://127.0.0.1/' });
+setGlobal('performance', { now: () => now_ms });
 AbortSignal.timeout = (ms) => ({ limit_ms: ms });
-stands('fetch', (where, options) => server.asked(JSON.parse(options.body), options.signal?.limit_ms ?? 1e9));
+setGlobal('fetch', (where, options) => server.handle(JSON.parse(options.body), options.signal?.limit_ms ?? 1e9));
 const { HostRobot } = await import(pathToFileURL(`${sources}/robot/host.js`).href);
 
 function randomFrom(seed) {
@@ -35,18 +35,18 @@ function randomFrom(seed) {
   };
 }
 
-async function passes() {
+async function settle() {
   for (let k = 0; k < 40; k += 1) await Promise.resolve();
 }
 
-async function until(end_ms) {
+async function waitUntil(end_ms) {
   for (;;) {
     timers.sort((a, b) => a.at_ms - b.at_ms);
     if (!timers.length || timers[0].at_ms > end_ms) break;
     const next = timers.shift();
     now_ms = next.at_ms;
-    next.does();
-    await passes();
+    next.callback();
+    await settle();
   }
   now_ms = end_ms;
 }
@@ -65,18 +65,18 @@ class Server {
     this.said = []; // and as they are sent
   }
 
-  asked(request, limit_ms) {
+  handle(request, limit_ms) {
     this.said.push(...(request.asked ?? []).filter((item) => item.do === 'keys').map(({ keys }) => keys));
-    if (request.do === 'beat') this.counts();
+    if (request.do === 'beat') this.countBeat();
     const answered = new Promise((resolve, reject) => {
       setLater(() => reject(new Error('timeout')), limit_ms);
-      const arrives = () => {
+      const arrive = () => {
         const answer = this.answer(request);
         if (this.loses(true)) return setLater(() => reject(new Error('lost')), this.lost_ms());
         setLater(() => resolve({ ok: true, status: 200, json: async () => answer }), this.late_ms());
       };
       if (this.loses(false)) return setLater(() => reject(new Error('lost')), this.lost_ms());
-      setLater(arrives, this.late_ms());
+      setLater(arrive, this.late_ms());
       if (this.random() < this.again) setLater(() => this.answer(request), this.late_ms());
     });
     if (request.do === 'beat') answered.then(() => { this.isUnderWay = false; }, () => Object.assign(this, { isUnderWay: false, lost_at_ms: now_ms }));
@@ -84,9 +84,9 @@ class Server {
   }
 
   /** A beat: one at a time, and no more than a class takes; after one that is lost it waits, unless there is something new. */
-  counts() {
-    const waits = this.lost_at_ms > this.wanted_at_ms ? 100 : 0;
-    if (this.isUnderWay || now_ms - this.beat_at_ms < 30 || now_ms - this.lost_at_ms < waits) this.tooSoon += 1;
+  countBeat() {
+    const pause_ms = this.lost_at_ms > this.wanted_at_ms ? 100 : 0;
+    if (this.isUnderWay || now_ms - this.beat_at_ms < 30 || now_ms - this.lost_at_ms < pause_ms) this.tooSoon += 1;
     Object.assign(this, { isUnderWay: true, beat_at_ms: now_ms });
   }
 
@@ -132,49 +132,49 @@ async function story(random, bad, isWild = false, dies = false) {
   let wasMet = false;
   let lost = 0;
   server.loses = (isAnswer) => {
-    const loses = random() < (dies && !wasMet ? 0 : bad) && (isWild || lost < 2);
-    if (loses) lost += 1;
+    const isLost = random() < (dies && !wasMet ? 0 : bad) && (isWild || lost < 2);
+    if (isLost) lost += 1;
     else if (isAnswer) lost = 0;
-    return loses;
+    return isLost;
   };
   server.late_ms = () => (bad && random() < 0.2 ? Math.floor(random() * (isWild ? 2500 : 400)) : 1);
   server.lost_ms = () => (bad && random() < 0.5 ? Math.floor(random() * 600) : 1);
   server.again = bad ? 0.1 : 0;
   const robot = new HostRobot({ onEvent: (event) => heardItems.push(event.event), onEnd: () => (over += 1) });
   robot.connect('p', 'tinibot', 'en').then(() => (wasMet = true)).catch(() => {}).finally(() => (metCount += 1));
-  await until(now_ms + 3000);
-  const asks = 1 + Math.floor(random() * 12);
-  let presses = 0;
+  await waitUntil(now_ms + 3000);
+  const askCount = 1 + Math.floor(random() * 12);
+  let pressCount = 0;
   const words = []; // how many times each has ended
-  for (let k = 0; k < asks; k += 1) {
+  for (let k = 0; k < askCount; k += 1) {
     ends.push(0);
     server.wanted_at_ms = now_ms;
-    const counts = () => (ends[k] += 1);
+    const countEnd = () => (ends[k] += 1);
     robot.ask({ what: `${server.name} ${k}` }).then((answer) => {
-      counts();
+      countEnd();
       if (answer.what !== `${server.name} ${k}`) heardItems.push(`another's answer: ${answer.what}`);
-    }, counts);
-    for (let presses = Math.floor(random() * 3); presses > 0; presses -= 1) {
+    }, countEnd);
+    for (let wordCount = Math.floor(random() * 3); wordCount > 0; wordCount -= 1) {
       words.push(0);
       const at = words.length - 1;
-      const counts = () => (words[at] += 1);
-      robot.press({ keys: (server.keys = (server.keys ?? 0) + 1), x: 0, y: 0 }).then(counts, counts);
+      const countWord = () => (words[at] += 1);
+      robot.press({ keys: (server.keys = (server.keys ?? 0) + 1), x: 0, y: 0 }).then(countWord, countWord);
     }
     if (random() < 0.1) {
       robot.stop();
-      presses += robot.isOver ? 0 : 1;
+      pressCount += robot.isOver ? 0 : 1;
     }
-    if (random() < 0.7) await until(now_ms + Math.floor(random() * 300)); // or at once
+    if (random() < 0.7) await waitUntil(now_ms + Math.floor(random() * 300)); // or at once
   }
-  await until(now_ms + (bad === 1 ? 8000 : 30_000));
+  await waitUntil(now_ms + (bad === 1 ? 8000 : 30_000));
   const isThere = wasMet && !robot.isOver;
   const isGone = bad < 1 || robot.isOver; // nothing arrives, and that is known
   robot.leave();
-  await passes();
+  await settle();
   const before = JSON.stringify([ends, heardItems, over]);
-  await until(now_ms + 10_000);
+  await waitUntil(now_ms + 10_000);
   const isQuiet = JSON.stringify([ends, heardItems, over]) === before;
-  return { words, met: metCount, wasMet, isThere, isGone, over, ends, presses, heard: heardItems, isQuiet, timers: timers.length, tooSoon: server.tooSoon };
+  return { words, met: metCount, wasMet, isThere, isGone, over, ends, presses: pressCount, heard: heardItems, isQuiet, timers: timers.length, tooSoon: server.tooSoon };
 }
 
 for (let seed = 0; seed < seeds; seed += 1) {

@@ -7,25 +7,25 @@ const { ProgressWatch, watchPromise } = await import(`${process.argv[2]}/page/pr
 mock.timers.enable({ apis: ['setTimeout'] });
 const settle = () => new Promise((resolve) => setImmediate(resolve));
 
-async function passes(milliseconds) {
+async function wait(milliseconds) {
   await settle();
   mock.timers.tick(milliseconds);
   await settle();
 }
 
 const told = [];
-let waits = 0;
-const never = watchPromise(new Promise(() => {}), { onWait: () => { waits += 1; } }).catch((error) => error.name);
-await passes(3001);
-await passes(17_000);
-told.push(`${await never} ${waits}`);
+let waitCount = 0;
+const never = watchPromise(new Promise(() => {}), { onWait: () => { waitCount += 1; } }).catch((error) => error.name);
+await wait(3001);
+await wait(17_000);
+told.push(`${await never} ${waitCount}`);
 const cancelSignal = AbortSignal.abort();
 told.push(await watchPromise(new Promise(() => {}), { cancelSignal }).catch((error) => error.name));
 told.push(await watchPromise(Promise.resolve('there'), {}));
-const over = new ProgressWatch({ onWait: () => { waits += 1; } });
-waits = 0;
+const over = new ProgressWatch({ onWait: () => { waitCount += 1; } });
+waitCount = 0;
 over.end();
 over.advance(); // of somebody who does not know that it is over
-await passes(25_000);
-told.push(`${waits} ${over.signal.aborted}`);
+await wait(25_000);
+told.push(`${waitCount} ${over.signal.aborted}`);
 console.log(JSON.stringify(told));

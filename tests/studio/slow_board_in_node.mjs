@@ -8,7 +8,7 @@ let now_ms = 0;
 let timers = [];
 Date.now = () => now_ms;
 globalThis.setTimeout = (callback, ms = 0) => {
-  const timer = { at_ms: now_ms + ms, does: callback };
+  const timer = { at_ms: now_ms + ms, callback };
   timers.push(timer);
   return timer;
 };
@@ -40,7 +40,7 @@ class Board {
     this.written = 0;
   }
 
-  answers(command) {
+  answer(command) {
     this.asked += 1;
     let rest = [];
     if (command[0] === 0x75) rest = [0x1e, 0x95, 0x0f];
@@ -71,7 +71,7 @@ class Cable {
   }
 
   async write(data) {
-    const answer = this.board.answers([...data]);
+    const answer = this.board.answer([...data]);
     const late_ms = 1 + Math.floor(this.board.random() * this.board.slow_ms);
     // an answer comes in two parts
     const cut = Math.floor(this.board.random() * answer.length);
@@ -81,7 +81,7 @@ class Cable {
   }
 }
 
-async function passes() {
+async function settle() {
   for (let k = 0; k < 20; k += 1) await Promise.resolve();
 }
 
@@ -105,13 +105,13 @@ for (let seed = 0; seed < seeds; seed += 1) {
     () => (ended ||= 'done'),
     (error) => (ended ||= error.reason ?? String(error)),
   );
-  await passes();
+  await settle();
   while (!ended && timers.length) {
     timers.sort((a, b) => a.at_ms - b.at_ms);
     const next = timers.shift();
     now_ms = next.at_ms;
-    next.does();
-    await passes();
+    next.callback();
+    await settle();
   }
   const isSame = firmware.every((byte, k) => board.memory[k] === byte);
   console.log(JSON.stringify({ ...plan, silent: plan.silent < Infinity, pages: Math.ceil(firmware.length / PAGE), ended, took_ms: now_ms, isSame, last }));
