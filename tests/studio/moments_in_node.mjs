@@ -15,7 +15,7 @@ const rounded = (value) => JSON.parse(JSON.stringify(value, (_, item) => (typeof
 
 const hasDone = ({ events }) => events.some(([, event]) => !event.startsWith('READ '));
 
-function played(moments, random, most) {
+function play(moments, random, most) {
   const count = Math.floor(random() * 2000), quiet = random();
   const below = (limit) => Math.floor(random() * limit);
   const told = new Map(); // by its time: the state, and all that had been shown
@@ -75,7 +75,7 @@ for (let seed = 1; seed <= Number(process.argv[3]); seed += 1) {
   const random = chanceOf(seed * 7919);
   const most = [3000, 20_000, 2_000_000][seed % 3];
   const moments = new Moments(most);
-  played(moments, random, most);
+  play(moments, random, most);
   moments.clear(); // the second run knows nothing of the first one
-  console.log(JSON.stringify(played(moments, random, most)));
+  console.log(JSON.stringify(play(moments, random, most)));
 }
