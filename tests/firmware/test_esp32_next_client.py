@@ -114,12 +114,13 @@ def test_errors_of_one_client_do_not_affect_the_next(make: Make, disturbance: st
     assert owner_time_ms(robot, make, keys) <= usual_ms + 30  # a stop is released first
 
 
+@pytest.mark.sampled("make")
 @pytest.mark.parametrize("make", TRANSPORTS)
 def test_a_stop_that_waits_for_earlier_bytes_leaves_with_its_client(make: Make) -> None:
     """It is behind so many bytes that the robot has not taken it when its client leaves."""
     for byte_count in range(200, 801, 100):
-        robot, end, _ = far_owner(keys := Keys())
-        end.leave()
+        robot, owner_end, _ = far_owner(keys := Keys())
+        owner_end.leave()
         talk(robot, [], AUTHORITY_MS + 100)
         end = make(robot)
         talk(robot, [(end, RawClient(b"x" * byte_count + b"\nS\n"))], 1)

@@ -134,6 +134,7 @@ class Part extends Heard {
   children = [];
   files = [];
   options = [];
+  selectedIndex = 0;
   textContent = '';
   value = '';
   open = false;
@@ -164,6 +165,7 @@ class Part extends Heard {
   }
   replaceChildren(...parts) {
     this.children = [];
+    this.selectedIndex = 0; // of a select
     this.append(...parts);
   }
   appendChild(part) {

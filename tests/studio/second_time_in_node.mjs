@@ -3627,6 +3627,44 @@ const PARTS = {
     };
   },
 
+  // What the teacher gives to all is what was chosen last, also before the titles of the lessons come, and when the window
+  // was open before.
+  async handing() {
+    const page = freshPage();
+    await loadTexts(page);
+    const { HandoutWindow } = await page.load('class/handout.js');
+    const LESSONS = [1, 2, 3].map((number) => ({ title: `L${number}`, block_title: `B${number}` }));
+    let delay = () => 5, handouts = [], isEarly = true;
+    const python = {
+      async ask() {
+        isEarly = true;
+        await later(delay());
+        isEarly = false;
+        return { lessons: LESSONS };
+      },
+    };
+    const handout = new HandoutWindow({ python, work: { text: 'F(1)', robot: 'tinibot' } }, (item) => handouts.push(item.lesson ?? 0));
+    const [choice, give] = handout.dialog.children[1].children[1].children;
+    let chosen = 0; // the program in the studio, or a lesson
+    const ends = new Set();
+    return async (random, isGood) => {
+      delay = () => (isGood ? 5 : random.below(400));
+      handouts = [];
+      for (let k = 1 + random.below(4); k > 0; k -= 1) {
+        handout.open(LESSONS.length);
+        await wait(random.below(300));
+        ends.add(isEarly ? 'early' : 'late');
+        if (isGood || random() < 0.7) chosen = choice.selectedIndex = random.below(1 + LESSONS.length);
+        await wait(random.below(500));
+        give.click();
+        if (handouts.at(-1) !== chosen) throw new Error(`${handouts.at(-1)} is given in place of ${chosen}`);
+        if (random() < 0.5) await wait(500);
+      }
+      await wait(500);
+      return { ends: [...ends], seen: isGood && [handouts, handout.dialog.open] };
+    };
+  },
+
   // What cannot be taken back is pressed once, twice, and at any time; and the class ends.
   async sure() {
     const page = freshPage({ generate: () => ({ toCanvas() {} }), correction: {} });

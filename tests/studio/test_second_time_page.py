@@ -55,6 +55,7 @@ ENDS_BY_PART = {
     "places": {"meet", "upload", "startAgain", "stop", "line", "setBreakpoints", "halt", "goOn"},
     "recording": {"theirs", "show", "end", "awaitButton", "gone", "halt", "read"},
     "giving": {"chosen", "gone", "alike", "nobody"},
+    "handing": {"early", "late"},
     "sure": {"sure", "once"},
     "cable": {"closed", "opening", "open", "over"},
     "queue": {"ask", "press", "hear", "stop", "wait", "broken"},
