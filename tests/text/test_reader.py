@@ -457,14 +457,6 @@ def test_readings_of_a_called_body_count_as_read() -> None:
     assert readings_of("DISTANCE;DEF LOOK;X=DISTANCE;END_DEF;X=DISTANCE") == ["READ_2"] * 2
 
 
-def test_readings_on_all_branches_count_as_read() -> None:
-    both = "IF(TRUE);DISTANCE;ELSE;DISTANCE;ENDIF;X=DISTANCE"
-    assert readings_of(both) == ["READ_2"] * 2
-    assert readings_of(both.replace("ELSE;", "")) == ["READ_2"] * 3
-    assert readings_of("IF(TRUE);DISTANCE;ELSE;S;ENDIF;X=DISTANCE") == ["READ_2"] * 2
-    assert readings_of("IF(TRUE);S;ELSE;DISTANCE;ENDIF;X=DISTANCE") == ["READ_2"] * 2
-
-
 def test_the_values_of_a_call_are_set_one_after_the_other() -> None:
     code = code_of("DEF A(X,P);X=P;SHOW(X);END_DEF;DEF C(X);A(X,LIGHT_L);END_DEF;"
                    "C(DISTANCE)")  # fmt: skip
