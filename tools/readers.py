@@ -20,7 +20,7 @@ from tiniscript.recovery import rewrites
 from tiniscript.recovery.lines import Step
 from tiniscript.recovery.meanings import UNNAMED_END, Lexeme, Names, lexemes, setup_of, texts
 from tiniscript.recovery.search import LineChange
-from tiniscript.recovery.told import MOST_ROUNDS, READERS, WrongText
+from tiniscript.recovery.told import MAX_ROUNDS, READERS, WrongText
 
 WHOLE_LINE_READERS = (
     "_sure_findings",
@@ -32,7 +32,7 @@ def trace(text: str) -> Iterator[str]:
     """Yield lines about the readers of a text, round by round, and their messages."""
     kit = robot_of(text.encode(), robots.load(robots.DEFAULT)).kit
     text_left = text
-    for _ in range(MOST_ROUNDS):
+    for _ in range(MAX_ROUNDS):
         diagnostics = analyze(text_left, kit).diagnostics
         if not any(diagnostic.is_mistake for diagnostic in diagnostics):
             break

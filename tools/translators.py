@@ -18,7 +18,7 @@ from babel.messages.pofile import PoFileError, read_po, write_po
 
 from tiniscript.base.catalogue_source import Catalogue, Entry, Forms
 from tiniscript.base.languages import NAMES_CATALOGUE, languages
-from tiniscript.base.translations import NUMBERS_TRIED, Language, find_misfits
+from tiniscript.base.translations import NUMBERS_TRIED, Language, find_problems
 from tiniscript.base.version import __version__
 from tools.translation_files import Translation, print_problems
 
@@ -135,7 +135,7 @@ def _take_text(message: Message, forms: Forms, translation: Translation) -> str:
         return f"{message.context}: its English text is not this one now: {english[:40]}"
     old_translation, old_seen = entry.translation, entry.seen_hash
     entry.translation, entry.seen_hash = forms, entry.hash
-    if reason := find_misfits(entry, translation.language):
+    if reason := find_problems(entry, translation.language):
         entry.translation, entry.seen_hash = old_translation, old_seen
         return f"{message.context}: {reason[0]}"
     translation.put_entries(name, key, group)

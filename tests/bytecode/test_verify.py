@@ -11,7 +11,7 @@ import pytest
 from tests.support.casefile import ROOT, read
 from tests.support.kits import KITS
 from tiniscript import compile_text
-from tiniscript.base.kit import MOST_DEVICES
+from tiniscript.base.kit import MAX_DEVICES
 from tiniscript.base.limits import CODE_BYTES
 from tiniscript.bytecode.opcodes import OPS
 from tiniscript.bytecode.verify import RULES, Refused, verify
@@ -59,7 +59,7 @@ def test_devices_are_counted(sensors: int) -> None:
         if index < sensors:
             assert verify(code, sensors, 0).uses == (("sensor", index),)
         else:
-            rule = "NO_SUCH_DEVICE" if index < MOST_DEVICES else "BAD_OPERAND"
+            rule = "NO_SUCH_DEVICE" if index < MAX_DEVICES else "BAD_OPERAND"
             with pytest.raises(Refused, match=rule):
                 verify(code, sensors, 0)
 

@@ -215,7 +215,7 @@ def test_values_stand_beside_the_floor_on_a_wide_terminal() -> None:
 
 
 def test_a_long_path_stays_in_view_and_in_bounded_memory(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(sketch, "MOST_CORNERS", 100)
+    monkeypatch.setattr(sketch, "MAX_CORNERS", 100)
     long_sketch = sketch.Sketch(robots.load("tinibot"))
     for k in range(3000):
         long_sketch.set_motors(k * 500, 60 + k % 30, 90 - k % 41)

@@ -35,7 +35,7 @@ from tiniscript.cli.robot.fleet import (
 from tiniscript.cli.robot.member import Member, Result, Target
 from tiniscript.cli.terminal import fleet_table
 from tiniscript.cli.terminal.fleet_table import FleetTable
-from tiniscript.cli.terminal.progress import MOST_PERCENT
+from tiniscript.cli.terminal.progress import MAX_PERCENT
 from tiniscript.cli.texts import text
 from tiniscript.library import opening
 from tiniscript.link import known_ports, ports
@@ -419,7 +419,7 @@ def test_an_upload_to_many_keeps_its_map_and_learns_their_names(
     receipt = {"checksum": "1", "code_bytes": 10}
 
     def send_program(*words: Any) -> Any:
-        for done_bytes, percent in ((0, 0), (5, 50), (10, MOST_PERCENT)):
+        for done_bytes, percent in ((0, 0), (5, 50), (10, MAX_PERCENT)):
             words[-1](done_bytes)
             assert member.state == ("crew_sending", {"percent": percent})
         return SimpleNamespace(program=1, run=1, saved=0)

@@ -12,7 +12,7 @@ from rich.text import Text
 
 from tiniscript.cli.commands import firmware_wiring
 from tiniscript.cli.terminal.canvas import Canvas, merge_layers, put_letter
-from tiniscript.cli.terminal.plot import MOST_ROWS, Plot, scale
+from tiniscript.cli.terminal.plot import MAX_ROWS, Plot, scale
 from tiniscript.cli.terminal.run_drawing import Picture
 from tiniscript.cli.terminal.screen import BEGIN_UPDATE, END_UPDATE, Frame
 
@@ -160,7 +160,7 @@ def test_a_small_change_of_the_values_does_not_move_the_axis() -> None:
     assert [text.plain[:8] for text in lines_before[1:]] == [
         text.plain[:8] for text in lines_after[1:]
     ]
-    assert len(lines_after) <= MOST_ROWS + 1
+    assert len(lines_after) <= MAX_ROWS + 1
     assert sum(bool(text.plain[:5].strip()) for text in lines_after[1:]) >= 3, "marks"
 
 

@@ -457,7 +457,7 @@ NUMBERS = range(1, 7)
 LIMITED_MEMORIES = {
     "ports": LimitedMemory(
         known_ports,
-        "MOST_PORTS",
+        "MAX_PORTS",
         lambda number, value: known_ports.remember(f"COM{number}", str(value)),
         lambda: {
             int(port[-1]): int(name)
@@ -466,7 +466,7 @@ LIMITED_MEMORIES = {
     ),
     "robots that were met": LimitedMemory(
         met_robots,
-        "MOST_PLACES",
+        "MAX_PLACES",
         lambda number, value: met_robots.remember_robot(met_robots_file(), str(number), value),
         lambda: {
             int(place): robot
@@ -476,25 +476,25 @@ LIMITED_MEMORIES = {
     ),
     "robots that may answer": LimitedMemory(
         met_robots,
-        "MOST_PLACES",
+        "MAX_PLACES",
         lambda number, _: met_robots.accept(met_robots_file(), number),
         lambda: dict.fromkeys(met_robots.read_met_robots(met_robots_file()).accepted_ids, 0),
     ),
     "profiles": LimitedMemory(
         given,
-        "MOST_PROFILES",
+        "MAX_PROFILES",
         lambda number, _: given.remember(f"/{number}", number),
         lambda: dict.fromkeys((number for number, _ in given._remembered_profiles()), 0),
     ),
     "maps": LimitedMemory(
         source_map,
-        "MOST_MAPS",
+        "MAX_MAPS",
         lambda number, value: source_map.remember(
             program(number), SourceMap("", (str(value),), ())
         ),
         maps_by_number,
     ),
-    "firmware": LimitedMemory(ready, "MOST_FILES", remember_firmware, found_firmware),
+    "firmware": LimitedMemory(ready, "MAX_FILES", remember_firmware, found_firmware),
 }
 HAS_NO_VALUES = ("robots that may answer", "profiles")
 

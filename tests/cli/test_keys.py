@@ -15,7 +15,7 @@ from tests.support.command import Tsc
 from tiniscript.base import files
 from tiniscript.link import met_robots
 from tiniscript.link.authority import RobotKey, disown
-from tiniscript.link.keys import MOST_KEYS, BadKeys, KeyFile, encode_keys
+from tiniscript.link.keys import MAX_KEYS, BadKeys, KeyFile, encode_keys
 from tiniscript.link.messages import KEY_OWNER, KEY_TEACHER, STATUSES
 from tiniscript.link.payloads import EmptyReply, HelloReply
 from tiniscript.link.requests import OK, DeviceInfo, Reply
@@ -48,7 +48,7 @@ def test_the_key_file_is_private(key_file: KeyFile) -> None:
      encode_keys([OWNER_KEY._replace(key=bytes(3))]),
      encode_keys([OWNER_KEY]).replace(b"12345678", b"1234567"), b"[" * 100_000,
      encode_keys([OWNER_KEY]).replace(b"12345678", b"-1234567"),
-     encode_keys([OWNER_KEY] * (MOST_KEYS + 1))],
+     encode_keys([OWNER_KEY] * (MAX_KEYS + 1))],
 )  # fmt: skip
 def test_an_invalid_key_file_is_left_as_it_is(key_file: KeyFile, data: bytes) -> None:
     key_file.path.parent.mkdir()
@@ -188,16 +188,16 @@ def test_keys_that_do_not_fit_leave_the_existing_keys(tsc: Tsc, tmp_path: Path) 
     """The keys of a stranger would remove a person's own robots."""
     key_file, large_file = KeyFile(), tmp_path / "many.json"
     key_file.add([OWNER_KEY])
-    foreign_keys = [RobotKey(robot, KEY_OWNER, bytes([7] * 16), "X") for robot in range(MOST_KEYS)]
+    foreign_keys = [RobotKey(robot, KEY_OWNER, bytes([7] * 16), "X") for robot in range(MAX_KEYS)]
     large_file.write_bytes(encode_keys(foreign_keys))
     for language, words in (("en", "2000 keys"), ("es", "2000 llaves")):
         tsc("set", "owner", "--import", str(large_file), "--lang", language).gives(2, words, out="")
     assert key_file.all() == [OWNER_KEY]
-    assert key_file.add(foreign_keys[1:]) == MOST_KEYS - 1
+    assert key_file.add(foreign_keys[1:]) == MAX_KEYS - 1
     assert key_file.create_pending_key(5_000, KEY_OWNER, "A") is None, (
         "no key is dropped for a new one"
     )
-    assert OWNER_KEY in key_file.all() and len(key_file.all()) == MOST_KEYS
+    assert OWNER_KEY in key_file.all() and len(key_file.all()) == MAX_KEYS
 
 
 def test_a_broken_or_publicly_readable_file_is_reported(tsc: Tsc) -> None:
@@ -298,7 +298,7 @@ def test_a_failure_to_keep_addresses_ends_nothing(key_file: KeyFile) -> None:
 def test_the_number_of_kept_addresses_is_limited(
     key_file: KeyFile, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(met_robots, "MOST_PLACES", 3)
+    monkeypatch.setattr(met_robots, "MAX_PLACES", 3)
     for number in range(5):
         key_file.remember_robot(f"tcp://{number}", number)
     assert [key_file.robot_at(f"tcp://{number}") for number in range(5)] == [None, None, 2, 3, 4]

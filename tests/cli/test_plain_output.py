@@ -21,7 +21,7 @@ from tiniscript.base.source import printable
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.robot.event_printer import EventPrinter
 from tiniscript.cli.spreadsheet import escape_formula
-from tiniscript.cli.texts import MOST_VALUE_CHARACTERS, Sentence, text
+from tiniscript.cli.texts import MAX_VALUE_CHARACTERS, Sentence, text
 from tiniscript.cli.texts.verbs import command_words
 from tiniscript.link import known_ports, ports
 from tiniscript.link.outcomes import TextEvent
@@ -176,7 +176,7 @@ def test_a_bug_is_reported_in_plain_text(tsc: Tsc, monkeypatch: pytest.MonkeyPat
 def test_a_sentence_leaves_the_lines_of_other_sentences() -> None:
     sentence = Sentence("{a}|{b}").format(a="x\ny", b=Sentence("x\ny"))
     assert sentence == "x?y|x\ny"
-    assert Sentence("{a}").format(a="x" * 10_000) == "x" * MOST_VALUE_CHARACTERS + "…"
+    assert Sentence("{a}").format(a="x" * 10_000) == "x" * MAX_VALUE_CHARACTERS + "…"
     assert Sentence("{a:>3}").format(a=1) == "  1"
     assert isinstance(text("no_verb", "en"), Sentence)
     assert (

@@ -327,7 +327,7 @@ def test_a_recording_has_an_end_and_no_more(
         events = record(file, show, *end_options, start_s=monotonic())
         assert [event.event for event in events] == expected_texts
     with monkeypatch.context() as patch:
-        patch.setattr(recordings, "MOST_ROW_BYTES", 30)
+        patch.setattr(recordings, "MAX_ROW_BYTES", 30)
         events = record(file, *(("SHOW", str(k)) for k in range(9)), end="LOST")
     assert [event.event for event in events] == ["SHOW 0", "SHOW 1"]
     assert events[0] == Row(0, "SHOW 0")  # the value shown when the recording began

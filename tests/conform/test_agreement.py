@@ -19,7 +19,7 @@ from tiniscript.conformance.kit import MACHINE_FORM, MACHINE_VERSION, cases_in
 from tools.generate.machine_kit import Run, answer_of, case_of, lines_of, runs
 
 AVR_BYTES = 620  # most bytes of an image
-AVR_DEVICES = 14, 4  # sensors and actuators, at most: `kMostSensors` of the chip's runner
+AVR_DEVICES = 14, 4  # sensors and actuators, at most: `kMaxSensors` of the chip's runner
 
 
 @lru_cache(maxsize=1)

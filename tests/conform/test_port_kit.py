@@ -193,7 +193,7 @@ def flood(peer: socket.socket) -> None:
 
 
 @pytest.mark.parametrize(
-    ("serve", "sentence"),
+    ("serve", "expected_text"),
     [
         (lambda peer: None, "disappeared"),
         (lambda peer: peer.recv(1), "disappeared"),
@@ -202,7 +202,10 @@ def flood(peer: socket.socket) -> None:
     ids=["closes", "closes later", "floods"],
 )
 def test_other_devices_on_the_port_are_reported(
-    serve: Callable[[socket.socket], None], sentence: str, tsc: Tsc, monkeypatch: pytest.MonkeyPatch
+    serve: Callable[[socket.socket], None],
+    expected_text: str,
+    tsc: Tsc,
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     from tiniscript.cli.commands import doctor_conform
 
@@ -210,7 +213,7 @@ def test_other_devices_on_the_port_are_reported(
     with server(serve) as port:
         result = tsc("doctor", "--conform", "--port", port)
     assert result.code == 3
-    assert sentence in result.err
+    assert expected_text in result.err
 
 
 def test_a_pulled_cable_is_reported(pty_robot: PtyRobot, tsc: Tsc) -> None:

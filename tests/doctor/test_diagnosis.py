@@ -20,7 +20,7 @@ from tiniscript.cli.texts.causes import sentences_of
 from tiniscript.doctor.diagnosis import Diagnosis, DoctorServices, Question, diagnose
 from tiniscript.doctor.examination import Expectations
 from tiniscript.doctor.findings import CAUSES
-from tiniscript.doctor.robot import MOST_UNANSWERED
+from tiniscript.doctor.robot import MAX_UNANSWERED
 from tiniscript.link import errors
 from tiniscript.link.connection import LinkConnection
 from tiniscript.link.errors import PortError
@@ -367,7 +367,7 @@ def test_a_robot_that_falls_silent_behind_another_tsc_is_given_up(
         Reply(OK, 0, STATUS),
         *[Reply(OK, 0, PONG)] * answered_count,
     ]
-    lost_replies: list[Reply[Any]] = [Reply(LOST)] * MOST_UNANSWERED
+    lost_replies: list[Reply[Any]] = [Reply(LOST)] * MAX_UNANSWERED
     case.shared_connection = OtherCommand(*known_replies, *lost_replies)
     assert "falls_silent" in [finding.cause for finding in case.diagnosis().findings]
     case.shared_connection = OtherCommand(

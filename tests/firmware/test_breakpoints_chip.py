@@ -38,7 +38,7 @@ pytestmark = pytest.mark.skipif(bool(missing()), reason=missing())
 
 BOARDS = {"uno": "uno_breakpoints", "mega": "mega"}  # PlatformIO environment of each board
 OWN_MS = 1500  # observed time of a program
-MOST_HALTS = 60
+MAX_HALTS = 60
 HALT_MS = 60  # longest time until a halt is known
 SEEN_MS, LASTING_MS = 0.5, 20  # a setting too long to miss, and one certain to be seen
 OFF_MS = 10  # tolerance for a setting, and extra tolerance for each halt
@@ -68,7 +68,7 @@ def write_program(rng: random.Random) -> Image | None:
 def run_in_tsc(image: Image) -> Seen:
     """Return the trace of `tsc run`."""
     data = pack(image.start, image.devices, image.code, needs=image.needs)
-    trace = MACHINES["python"](data, KIT, Senses(max_ms=OWN_MS + HALT_MS * (MOST_HALTS + 2)))
+    trace = MACHINES["python"](data, KIT, Senses(max_ms=OWN_MS + HALT_MS * (MAX_HALTS + 2)))
     rows = [line.split(maxsplit=2) for line in trace.splitlines()]
     end_ms = float(rows[-1][0])
     times = [(float(row[0]), row[2]) for row in rows if row[1] == "MOTORS"]
@@ -91,7 +91,7 @@ def step_on_chip(image: Image, uno: Uno) -> Seen:
     assert wired_uno.until(session.start()) == OK
     since_cycle, shows, halts = uno.cycle, list[str](), 0
     own_ms, is_over = 0, False
-    while own_ms < OWN_MS + HALT_MS * (halts + 2) and halts < MOST_HALTS and not is_over:
+    while own_ms < OWN_MS + HALT_MS * (halts + 2) and halts < MAX_HALTS and not is_over:
         wired_uno.run(1)
         own_ms += 1
         for event in session.events():
@@ -142,7 +142,7 @@ def compare(image: Image, uno: Uno) -> bool:
     show_count = min(len(expected_observation.shows), len(run.shows))
     assert run.shows[:show_count] == expected_observation.shows[:show_count]
     assert is_within(list_long_settings(run, SEEN_MS), list_long_settings(expected_observation, 0))
-    assert run.is_over or expected_observation.end_ms > OWN_MS or run.halts == MOST_HALTS
+    assert run.is_over or expected_observation.end_ms > OWN_MS or run.halts == MAX_HALTS
     if run.is_over:
         assert run.shows == expected_observation.shows and expected_observation.is_over
         expected, actual = sum_durations(expected_observation), sum_durations(run)
@@ -201,7 +201,7 @@ def test_a_firmware_with_breakpoints_leaves_enough_stack(
     board: str, environment: str, sketches: Callable[[str], Path]
 ) -> None:
     stack = firmware_stack.measure(sketches(environment), robots.load("tinibot"), board, True)
-    assert stack.least_free >= firmware_stack.LEAST_FREE
+    assert stack.least_free >= firmware_stack.MIN_FREE
 
 
 if __name__ == "__main__":

@@ -159,8 +159,8 @@ def talk(attacker: Between, session: Session, request: PendingRequest[Any] | Non
         names += [event.name for event in session.events()]
         if (request is not None and request.outcome) or {"STOPPED", "LOST"} & set(names):
             break
-        wakes_ms = session.next_wake_ms()
-        now_ms = max(now_ms + 2, min(now_ms + 100, now_ms + 100 if wakes_ms is None else wakes_ms))
+        wake_ms = session.next_wake_ms()
+        now_ms = max(now_ms + 2, min(now_ms + 100, now_ms + 100 if wake_ms is None else wake_ms))
     return names
 
 

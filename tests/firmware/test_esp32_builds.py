@@ -87,7 +87,7 @@ def test_a_core_with_different_bluetooth_is_refused() -> None:
 
 # Static RAM of the sketch without Espressif's libraries: those and their radios take about 45 K of
 # an ESP32-C3's RAM, and TLS 40.
-MOST_RAM = 48 * 1024
+MAX_RAM = 48 * 1024
 
 
 def ram_of(isa: Chip, file: str) -> int:
@@ -153,7 +153,7 @@ def test_the_whole_sketch_links_with_only_the_core(chip: str, major: int, tmp_pa
         compile_one(isa, path, objects[-1], flags)
     object_path = str(tmp_path / "whole.o")
     subprocess.run([*isa.linker, "-r", *objects, "-o", object_path], check=True)
-    assert ram_of(isa, object_path) <= MOST_RAM, "the radios need the rest"
+    assert ram_of(isa, object_path) <= MAX_RAM, "the radios need the rest"
     nm = isa.measurer.replace("-size", "-nm")
     output = subprocess.run(
         [nm, "-u", object_path], capture_output=True, text=True, check=True

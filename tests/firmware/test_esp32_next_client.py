@@ -10,7 +10,7 @@ import pytest
 
 from tests.machines.esp32 import Esp32Robot
 from tests.support.esp32_radio import (
-    LEAST_MTU,
+    MIN_MTU,
     Client,
     End,
     LowEnergy,
@@ -213,7 +213,7 @@ def test_the_next_client_gets_no_remainder_of_a_partial_message(
 def test_the_next_client_gets_no_packet_beyond_its_own_mtu() -> None:
     """The agreement of the client before does not matter: a client without one gets 20 bytes."""
     robot, _ = make_owned_robot(Keys())
-    for mtu in (LEAST_MTU, 247, LEAST_MTU, 100, 60, 247, LEAST_MTU):
+    for mtu in (MIN_MTU, 247, MIN_MTU, 100, 60, 247, MIN_MTU):
         end, client = LowEnergy(robot, mtu), session(mtu, robot)
         assert wait_for_outcome(robot, [(end, client)], client.status()) == "OK"
         assert wait_for_outcome(robot, [(end, client)], client.hello()) == "OK"

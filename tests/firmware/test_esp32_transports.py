@@ -11,7 +11,7 @@ import pytest
 
 from tests.machines.esp32 import Esp32Robot
 from tests.support.esp32_radio import (
-    LEAST_MTU,
+    MIN_MTU,
     Client,
     End,
     LowEnergy,
@@ -272,7 +272,7 @@ def test_notifications_fit_the_negotiated_mtu() -> None:
     ):  # HELLO's answer: a 0x00, and 48
         client = session(mtu, robot)
         end = LowEnergy(robot, mtu)
-        end.mtu = max(mtu, LEAST_MTU)
+        end.mtu = max(mtu, MIN_MTU)
         clients: Ends = [(end, client)]
         assert wait_for_outcome(robot, clients, client.hello()) == "OK"
         assert max(end.lengths) == longest

@@ -36,7 +36,7 @@ LARGEST_NUMBER = 63
 EVENTS = {number for number in BY_NUMBER if number >= FIRST_EVENT}
 REQUESTS = tuple(message for message in BY_NUMBER.values() if message.number not in EVENTS)
 UNKNOWN_NUMBERS = (*RETIRED_NUMBERS, *range(REQUESTS[-1].number + 1, FIRST_EVENT))
-MOST_RETIRED = 20  # bytes of a payload: where the first byte on the wire is small, no line ends
+MAX_RETIRED = 20  # bytes of a payload: where the first byte on the wire is small, no line ends
 STATUS_OK, STATUS_STALE, STATUS_BUSY = STATUSES["OK"], STATUSES["STALE"], STATUSES["BUSY"]
 REJECTING_STATUSES = {STATUSES[name] for name in ("STALE", "BAD_LENGTH", "UNKNOWN_MESSAGE")}
 MODES = (0x00, 0x01, 0x10, 0x20, 0x30, 0x50, 0x70, 0x13, 0xFF)
@@ -111,7 +111,7 @@ class Client:
         payload = rng.randbytes(
             rng.choice((min_bytes, max_bytes, rng.randrange(max_bytes + 1), rng.randrange(57)))
         )
-        payload = payload[: MOST_RETIRED if number in RETIRED_NUMBERS else None]
+        payload = payload[: MAX_RETIRED if number in RETIRED_NUMBERS else None]
         if fields and fields[0].name == "mode" and payload:
             payload = bytes([rng.choice(MODES)]) + payload[1:]
         if number in (BY_NAME["LIVE"].number, BY_NAME["PROGRAM"].number):

@@ -36,7 +36,7 @@ REQUESTS: dict[str, Callable[[Session], PendingRequest[Any]]] = {
     "NAME": lambda session: session.name(b"Luz"),
     "TRIM": lambda session: session.trim(b""),
 }  # fmt: skip
-MOST_LOST_IN_A_ROW = 2
+MAX_LOST_IN_A_ROW = 2
 
 
 class LossySession(Session):
@@ -50,7 +50,7 @@ class LossySession(Session):
         if self.is_deaf:
             data = b""
         if data and self.rng is not None:
-            is_lost = self._lost_in_a_row < MOST_LOST_IN_A_ROW and self.rng.random() < 0.5
+            is_lost = self._lost_in_a_row < MAX_LOST_IN_A_ROW and self.rng.random() < 0.5
             self._lost_in_a_row = self._lost_in_a_row + 1 if is_lost else 0
             data = b"" if is_lost else data
         super().receive(data, now_ms)

@@ -28,7 +28,7 @@ from tiniscript.link.payloads import ReadingEvent
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
 
-MOST_BYTES = 17  # bytes of READING on the line, as for SHOW
+MAX_BYTES = 17  # bytes of READING on the line, as for SHOW
 FAST_TICKS = 0  # a line without delay
 READING = BY_NAME["READING"]
 TOO_MANY_READINGS = "SI|LOOP(FOREVER);X = LIGHT_L + LIGHT_R + DISTANCE;W(0.005);END_LOOP"
@@ -111,7 +111,7 @@ def test_a_reading_message_is_no_longer_than_a_value_message() -> None:
         payload = encode_payload(READING.reply, values)
         seq, epoch = rng.randrange(256), rng.randrange(256)
         wire = encode_frame(Frame(READING.number, seq, epoch, payload, is_reply=True))
-        assert len(wire) <= MOST_BYTES
+        assert len(wire) <= MAX_BYTES
 
 
 def drawn_program(rng: random.Random) -> str:

@@ -27,7 +27,7 @@ from tests.support.robot_on_host import switched_on
 from tiniscript.bytecode.image import pack
 from tiniscript.bytecode.opcodes import BY_NAME as BY_OP
 from tiniscript.link.frames import decode_frame
-from tiniscript.link.messages import BY_NAME, MOST_BREAKPOINTS, RUN, STATUSES, payload_bytes, sizes
+from tiniscript.link.messages import BY_NAME, MAX_BREAKPOINTS, RUN, STATUSES, payload_bytes, sizes
 
 SEEDS = 24  # seeds of the tests; a campaign runs more
 TURN_COUNT = 60
@@ -102,7 +102,7 @@ def draw_request(rng: random.Random, name: str, client: Client) -> tuple[int, by
     if name == "TRIM" and rng.random() < 0.5:
         payload = bytes(rng.choice((0, 1, 3, 9, 20, 50, 200)) for _ in range(rng.choice((3, 11))))
     if name == "BREAK":
-        places = [rng.randrange(12) for _ in range(rng.randint(1, MOST_BREAKPOINTS))]
+        places = [rng.randrange(12) for _ in range(rng.randint(1, MAX_BREAKPOINTS))]
         payload = b"".join(place.to_bytes(2, "little") for place in places)
     if rng.random() < 0.1:
         payload = payload[:-1] if rng.random() < 0.5 else payload + b"\1"

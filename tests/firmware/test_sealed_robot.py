@@ -47,7 +47,7 @@ from tiniscript.link.session import Session
 
 SHORT = "SI|F(0.1, 80)"
 UNPLUGGED = 8
-MOST_TIMES, AUTHENTICATION_MS = 3, 500  # each piece again, and an authentication
+MAX_TIMES, AUTHENTICATION_MS = 3, 500  # each piece again, and an authentication
 
 
 def upload_and_capture(
@@ -301,7 +301,7 @@ def test_a_seal_lost_during_an_upload_loses_no_piece(
         request = session.upload(image, saves=False)
         table.advance_time(session, moment_ms)
         loses(table, session)
-        limit_ms = MOST_TIMES * duration_ms + AUTHENTICATION_MS
+        limit_ms = MAX_TIMES * duration_ms + AUTHENTICATION_MS
         assert table.robot.until(session, request, limit_ms) == OK, moment_ms
         assert table.robot.codes() == [image.code], moment_ms
 

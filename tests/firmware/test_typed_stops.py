@@ -27,7 +27,7 @@ from tests.support.robot_on_uno import FORWARD, KIT, NAMES, OBSTACLE_LINES, OFF,
 from tests.support.stop_spellings import (
     ALL_PREFIXES,
     FRAME_PREFIXES,
-    MOST_MS,
+    MAX_MS,
     RUNNING_LINE,
     SHORTEST_STOP_MS,
     SILENCE_MS,
@@ -118,7 +118,7 @@ def stop_after(uno: Uno, baud: int, prefix: bytes, spelling: bytes, is_busy: boo
     is_held = behind_ms < SHORTEST_STOP_MS + (BUSY_TURN_MS if is_busy else TURN_MS)
     if not is_busy:
         is_held = is_held and behind_ms > SHORTEST_STOP_MS - TURN_MS
-    assert late_ms < MOST_MS or is_held, f"{description}: {late_ms} ms"
+    assert late_ms < MAX_MS or is_held, f"{description}: {late_ms} ms"
     changes = len(uno.pins.history("left"))
     uno.send(b"F(1,80)\n")  # before a second of silence
     uno.run_ms(150)
@@ -172,7 +172,7 @@ def test_a_stop_without_line_ends_stops_when_repeated(
     """A held button's row of S, and a second STOP."""
     uno, baud = driving_at
     with uno.try_out():
-        assert stop_time_ms(uno, data, 10_000 / baud) < MOST_MS
+        assert stop_time_ms(uno, data, 10_000 / baud) < MAX_MS
 
 
 def test_a_row_of_s_without_line_ends_stops_at_the_third(driving_at: tuple[Uno, int]) -> None:

@@ -14,11 +14,11 @@ from pathlib import Path
 import pytest
 
 from tiniscript import robots
-from tools.bench.firmware_stack import LEAST_FREE, measure
+from tools.bench.firmware_stack import MIN_FREE, measure
 from tools.bench.stops import BusyRobot, Place, sample
 from tools.uno import CYCLES_PER_MS
 
-MOST_CYCLES = 12 * CYCLES_PER_MS // 1000
+MAX_CYCLES = 12 * CYCLES_PER_MS // 1000
 BEST_ECHO_CYCLES = range(-64, -24, 8)  # cycles: just before the last byte is there
 STOP_COUNT = 24
 SEED = 12
@@ -49,7 +49,7 @@ def test_a_stop_reaches_the_pins_in_12_us(
             places += [Place(places[0].cycle, echo, True) for echo in BEST_ECHO_CYCLES]
         for place in places:
             cycles = stopped_busy_robot.stop(place)
-            assert 0 < cycles <= MOST_CYCLES, place
+            assert 0 < cycles <= MAX_CYCLES, place
         together = stopped_busy_robot.worst_case_cycles()
     with capsys.disabled():
         slowest_us, together_us = (
@@ -57,7 +57,7 @@ def test_a_stop_reaches_the_pins_in_12_us(
             for cycles in (max(stopped_busy_robot.stop_cycles), together)
         )
         print(f"\n  {slowest_us:.1f} us; all at once {together_us:.1f} us", end=" ")
-    assert together <= MOST_CYCLES + more_cycles
+    assert together <= MAX_CYCLES + more_cycles
 
 
 # -- free RAM of the whole sketch at its deepest --------------------------------------------------
@@ -79,5 +79,5 @@ def test_the_sketch_leaves_stack_free(
         print(f"\n  {stack.untouched_bytes} bytes untouched, {stack.least_free} at least", end=" ")
     assert stack.program > 100 and stack.interrupt > 20
     assert stack.least_free <= stack.untouched_bytes + 4
-    assert stack.untouched_bytes >= LEAST_FREE
-    assert stack.least_free >= LEAST_FREE
+    assert stack.untouched_bytes >= MIN_FREE
+    assert stack.least_free >= MIN_FREE

@@ -294,11 +294,11 @@ def test_an_incomplete_file_is_rebuilt(text: str, is_whole: bool) -> None:
 
 
 def test_the_cache_does_not_grow_for_ever() -> None:
-    for number in range(ready.MOST_FILES + 5):
+    for number in range(ready.MAX_FILES + 5):
         file = ready.store("a/robot of mine", "uno", f"{number:016x}", b":00000001FF\n")
         os.utime(file.path, ns=(number, number))
     files = ready.files(ready.firmware_cache())
-    assert len(files) == ready.MOST_FILES and files[-1].digest == f"{ready.MOST_FILES + 4:016x}"
+    assert len(files) == ready.MAX_FILES and files[-1].digest == f"{ready.MAX_FILES + 4:016x}"
     assert {path.suffix for path in ready.firmware_cache().iterdir()} == {".hex"}
     for file in files:
         os.utime(file.path, (2**33, 2**33))  # the clock of this computer was ahead, or is behind

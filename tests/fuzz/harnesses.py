@@ -32,7 +32,7 @@ FLAGS = ("-std=c++11", "-O2", "-g", "-fsanitize=fuzzer,address,undefined",
 # Arguments for comparisons at half the time. Only the machine's harness needs seeds: the others fix
 # checksums themselves, and begin with every message and record.
 NO_TRACE_CMP_FLAG = "-fno-sanitize-coverage=trace-cmp"
-MOST_BYTES = 700  # most bytes of an input
+MAX_BYTES = 700  # most bytes of an input
 DONE_LINE = re.compile(r"Done (\d+) runs")
 
 VM = ("crc32.cpp", "find_word.cpp", "image.cpp", "verify.cpp", "bytecode.cpp", "decode_form.cpp")
@@ -89,7 +89,7 @@ class Found(NamedTuple):
 def fuzz(program: Path, folder: Path, runs: int, seed: int) -> Found:
     """Run inputs, first those in `folder`, which grows; stop at the first that is wrong."""
     crash = folder.parent / f"{folder.name}-crash"
-    command = [str(program), f"-runs={runs}", f"-seed={seed}", f"-max_len={MOST_BYTES}",
+    command = [str(program), f"-runs={runs}", f"-seed={seed}", f"-max_len={MAX_BYTES}",
                f"-exact_artifact_path={crash}", "-print_final_stats=0", "-timeout=25",
                str(folder)]  # fmt: skip
     # No stack is kept for each allocation: the place of a wrong access is enough.

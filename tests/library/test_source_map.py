@@ -203,7 +203,7 @@ def test_a_map_is_found_by_the_checksum_that_a_robot_reports() -> None:
 
 
 def test_the_oldest_maps_make_room(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(source_map, "MOST_MAPS", 3)
+    monkeypatch.setattr(source_map, "MAX_MAPS", 3)
     programs = [compile_right_text(f"W({k})") for k in range(1, 6)]
     for k, compilation in enumerate(programs):
         source_map.remember(compilation.image, make_source_map(compilation))

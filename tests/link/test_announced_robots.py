@@ -22,14 +22,14 @@ from tiniscript.link.transports import network, serial
 from tiniscript.link.transports.network import (
     ADDRESSES_S,
     LIST_S,
-    MOST_NAME_BYTES,
+    MAX_NAME_BYTES,
     ROBOT_MS,
     SEARCH_S,
     SERVICE,
     AnnouncedRobot,
 )
 
-NAMES = ("a", "b", "Ñ tini", "a.b", "x" * MOST_NAME_BYTES)
+NAMES = ("a", "b", "Ñ tini", "a.b", "x" * MAX_NAME_BYTES)
 OUTSIDE = ("8.8.8.8", "0.0.0.0")
 INSIDE = ("10.0.0.7", "192.168.1.2", "169.254.0.9", "127.0.0.1")
 
@@ -149,7 +149,7 @@ def test_a_list_has_the_robots_that_are_there(played: Network, seed: int) -> Non
 
 def test_a_flood_of_names_is_limited(played: Network, monkeypatch: pytest.MonkeyPatch) -> None:
     """A name that left has made room."""
-    monkeypatch.setattr(network, "MOST_ROBOTS", 3)
+    monkeypatch.setattr(network, "MAX_ROBOTS", 3)
     names = [f"n{number}" for number in range(6)]
     played.answers = dict.fromkeys(names, Answer(INSIDE[:1], 1, 0))
     played.events = [*(("add", name) for name in names), ("remove", "n1"), ("add", "n5")]
@@ -164,7 +164,7 @@ def test_a_name_leads_to_its_address_or_says_why_not(
     opened: list[str] = []
     monkeypatch.setattr(serial, "open_port", lambda port, *_: opened.append(port))
     for _ in range(10):
-        name, answer = rng.choice(("a", "ñ tini", "x" * MOST_NAME_BYTES)), random_answer(rng)
+        name, answer = rng.choice(("a", "ñ tini", "x" * MAX_NAME_BYTES)), random_answer(rng)
         played.answers = {name: answer}
         ask: Callable[[str], object] = rng.choice(
             (network.resolve, lambda port: network.open_port(port, 9600, 1))
@@ -181,7 +181,7 @@ def test_a_name_leads_to_its_address_or_says_why_not(
             assert exception_info.value.reason == reason and not opened
         assert played.now_ms - began_ms <= SEARCH_S * 1000
         check_network_is_left(played)
-    for name in ("", ".local", "x" * (MOST_NAME_BYTES + 1), "ñ" * MOST_NAME_BYTES):
+    for name in ("", ".local", "x" * (MAX_NAME_BYTES + 1), "ñ" * MAX_NAME_BYTES):
         began_ms = played.now_ms
         with pytest.raises(PortError):
             network.resolve(f"tcp://{name}")

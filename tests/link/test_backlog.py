@@ -10,7 +10,7 @@ import pytest
 
 from tests.support.waiting import until
 from tiniscript.link.outcomes import (
-    MOST_EVENTS,
+    MAX_EVENTS,
     Backlog,
     MissedEvent,
     ShownEvent,
@@ -72,7 +72,7 @@ def test_an_unread_line_keeps_few_events() -> None:
         events.append(row[1])
     line.close()
     assert kept_bytes < MAX_KEPT_BYTES
-    assert len(events) <= MOST_EVENTS + 1
+    assert len(events) <= MAX_EVENTS + 1
     assert events[0].name == "MISSED"
     assert events[0].count + len(events) - 1 == 20 * PIECE_COUNT
 
@@ -114,23 +114,23 @@ def make_shown_event(number: int) -> TimedEvent:
 def test_state_events_are_kept_in_preference_to_values() -> None:
     backlog = Backlog()
     backlog.add_events([(0, StartedEvent(1, 2)), make_shown_event(0)])
-    backlog.add_events(make_shown_event(number) for number in range(1, 10 * MOST_EVENTS))
+    backlog.add_events(make_shown_event(number) for number in range(1, 10 * MAX_EVENTS))
     backlog.add_events([(0, FaultEvent(1, 2, 3, 4))])
     events = [backlog.take_event()[1] for _ in range(len(backlog))]
     assert [event.name for event in events[:3]] == ["MISSED", "STARTED", "SHOW"]
-    assert events[-1].name == "FAULT" and len(events) == MOST_EVENTS + 1
-    assert events[-2] == ShownEvent(10 * MOST_EVENTS - 1, 0), "the newest is there"
-    assert events[0] == MissedEvent(10 * MOST_EVENTS + 2 - MOST_EVENTS)
+    assert events[-1].name == "FAULT" and len(events) == MAX_EVENTS + 1
+    assert events[-2] == ShownEvent(10 * MAX_EVENTS - 1, 0), "the newest is there"
+    assert events[0] == MissedEvent(10 * MAX_EVENTS + 2 - MAX_EVENTS)
     assert len(backlog) == 0
 
 
 def test_events_that_fit_are_not_missed() -> None:
     backlog = Backlog()
-    backlog.add_events(make_shown_event(number) for number in range(MOST_EVENTS))
-    assert [backlog.take_event()[0] for _ in range(MOST_EVENTS)] == list(range(MOST_EVENTS))
+    backlog.add_events(make_shown_event(number) for number in range(MAX_EVENTS))
+    assert [backlog.take_event()[0] for _ in range(MAX_EVENTS)] == list(range(MAX_EVENTS))
 
 
 def test_end_events_alone_are_also_bounded() -> None:
     backlog = Backlog()
-    backlog.add_events((number, DoneEvent(number)) for number in range(5 * MOST_EVENTS))
-    assert len(backlog) == MOST_EVENTS + 1
+    backlog.add_events((number, DoneEvent(number)) for number in range(5 * MAX_EVENTS))
+    assert len(backlog) == MAX_EVENTS + 1

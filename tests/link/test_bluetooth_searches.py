@@ -217,7 +217,7 @@ def test_each_search_finds_what_was_in_reach_in_its_scan(
     rng, selector = random.Random(seed), SimulatedSelector()
     radio = Radio(rng, lambda: selector.now_s)
     max_devices = rng.choice((1000, 3))
-    monkeypatch.setattr(search, "MOST_DEVICES", max_devices)
+    monkeypatch.setattr(search, "MAX_DEVICES", max_devices)
     monkeypatch.setattr(search, "BleakScanner", lambda notice: Scanner(radio, notice))
     monkeypatch.setattr(search, "_connected_devices", radio.connected_devices)
     loop = asyncio.SelectorEventLoop(selector)

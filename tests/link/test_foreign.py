@@ -14,7 +14,7 @@ from tests.support import foreign_boards as boards
 from tests.support.foreign_boards import RECORDINGS, Recording
 from tests.support.uart import at_speed
 from tiniscript.link import foreign
-from tiniscript.link.connection import FOREIGN, MOST_EARLY_BYTES, LinkConnection, reason_of
+from tiniscript.link.connection import FOREIGN, MAX_EARLY_BYTES, LinkConnection, reason_of
 from tiniscript.link.foreign import identify_board, identify_stranger
 from tiniscript.link.frames import Frame, encode_frame
 from tiniscript.link.messages import FIRST_EVENT, MESSAGES
@@ -268,9 +268,7 @@ def test_the_last_received_bytes_are_kept() -> None:
     for _ in range(100):
         line.note_heard(b"x" * 99)
     line.note_heard(boards.MBOT_START)
-    assert len(line.early_bytes) == MOST_EARLY_BYTES and line.early_bytes.endswith(
-        boards.MBOT_START
-    )
+    assert len(line.early_bytes) == MAX_EARLY_BYTES and line.early_bytes.endswith(boards.MBOT_START)
     line.robot = object()  # type: ignore[assignment]
     line.note_heard(b"y")
     assert (

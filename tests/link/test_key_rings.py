@@ -11,7 +11,7 @@ from typing import Any, TypeVar, cast
 import pytest
 
 from tiniscript.link import authority
-from tiniscript.link.authority import MOST_PENDING_KEYS, KeyRing, RobotKey
+from tiniscript.link.authority import MAX_PENDING_KEYS, KeyRing, RobotKey
 from tiniscript.link.keys import KeyFile, encode_keys
 from tiniscript.link.messages import KEY_BYTES, KEY_OWNER, KEY_TEACHER, SEALS, STATUSES
 from tiniscript.link.payloads import AuthenticateReply, EmptyReply
@@ -55,7 +55,7 @@ def test_a_claim_stays_until_it_is_confirmed_or_given_up(
                 claim = ring.create_pending_key(*slot, "TINI")
                 assert claim is not None
                 older_claims = [claim for claim in claims if claim.slot == slot]
-                claims = [c for c in claims if c not in older_claims[:-MOST_PENDING_KEYS]] + [claim]
+                claims = [c for c in claims if c not in older_claims[:-MAX_PENDING_KEYS]] + [claim]
             case "import":
                 add(ring, rng.choice(lists))
             case "refuse":

@@ -24,7 +24,7 @@ from tiniscript.link.session import DEAF_MS, Session
 CONSECUTIVE_LOSSES = 4  # packets of both that are lost before an answer arrives
 LINE_DEAD_MS, LINE_ALIVE_MS = 2500, 1500  # of a line that is dead again and again
 LONGEST_DELAY_MS = 1200  # most delay of data to the robot
-MOST_POLLS = 5  # polls in one moment
+MAX_POLLS = 5  # polls in one moment
 REQUEST_LIMIT_MS = 10_000  # of a request and of each of its pieces
 LONG_PROGRAM = "SI|" + "F(0.1, 30); B(0.1, 20);" * 60
 DETACHED_PROGRAM = "SI|F(20, 40)"
@@ -76,9 +76,9 @@ class BadLine:
 def polled_when_due(session: Session, now_ms: int) -> bytes:
     """Return what a session sends that is polled when it wants that, which is seldom."""
     data = b""
-    for _ in range(MOST_POLLS):
-        wakes_ms = session.next_wake_ms()
-        if wakes_ms is None or wakes_ms > now_ms:
+    for _ in range(MAX_POLLS):
+        wake_ms = session.next_wake_ms()
+        if wake_ms is None or wake_ms > now_ms:
             return data
         data += session.poll(now_ms)
     raise AssertionError("it wants to be woken again and again")

@@ -9,7 +9,7 @@ import random
 import pytest
 
 from tiniscript.link.transports import READ_S
-from tiniscript.link.transports.pushed import END_REASON, MOST_BUFFERED_BYTES, PushedTransport
+from tiniscript.link.transports.pushed import END_REASON, MAX_BUFFERED_BYTES, PushedTransport
 
 
 class Bell:
@@ -85,10 +85,10 @@ def test_a_read_waits_like_on_a_fresh_port(monkeypatch: pytest.MonkeyPatch, seed
 @pytest.mark.parametrize(
     "count",
     [
-        MOST_BUFFERED_BYTES - 1,
-        MOST_BUFFERED_BYTES,
-        MOST_BUFFERED_BYTES + 1,
-        3 * MOST_BUFFERED_BYTES,
+        MAX_BUFFERED_BYTES - 1,
+        MAX_BUFFERED_BYTES,
+        MAX_BUFFERED_BYTES + 1,
+        3 * MAX_BUFFERED_BYTES,
     ],
 )
 def test_read_bytes_free_their_space(monkeypatch: pytest.MonkeyPatch, count: int) -> None:
@@ -97,6 +97,6 @@ def test_read_bytes_free_their_space(monkeypatch: pytest.MonkeyPatch, count: int
         for _ in range(count // 1000):
             port.add_received(bytes(1000))
         port.add_received(bytes(count % 1000))
-        assert port.in_waiting == min(count, MOST_BUFFERED_BYTES)
-        assert len(port.read(10 * MOST_BUFFERED_BYTES)) == min(count, MOST_BUFFERED_BYTES)
+        assert port.in_waiting == min(count, MAX_BUFFERED_BYTES)
+        assert len(port.read(10 * MAX_BUFFERED_BYTES)) == min(count, MAX_BUFFERED_BYTES)
         assert port.in_waiting == 0

@@ -36,7 +36,7 @@ from tiniscript.link.messages import (
 from tiniscript.link.outcomes import CANCELLED, DETAIL_MIDWAY, LOST, PlaceEvent, TextEvent
 from tiniscript.link.payloads import DoneEvent, ReceiptReply
 from tiniscript.link.requests import SHORT_BYTES
-from tiniscript.link.round_trips import MOST_DOUBLED_MS, MOST_RETRY_MS
+from tiniscript.link.round_trips import MAX_DOUBLED_MS, MAX_RETRY_MS
 from tiniscript.link.session import IDLE_HEARTBEAT_MS, Session
 from tiniscript.link.transmission import CONFIRM_MS, STOP_MS, TRIES
 
@@ -71,7 +71,7 @@ def test_a_retry_waits_for_the_line_and_then_twice_as_long_up_to_a_second(
     # a byte more, the 0x00 before, from the second one on is no matter
     assert abs(times[0] - first_wait_ms) <= 2
     gaps = [later_ms - earlier_ms for earlier_ms, later_ms in pairwise(times)]
-    doubled = [min(times[0] << k, MOST_DOUBLED_MS) for k in range(1, len(gaps) + 1)]
+    doubled = [min(times[0] << k, MAX_DOUBLED_MS) for k in range(1, len(gaps) + 1)]
     assert all(
         abs(gap - expected_gap) <= 2 for gap, expected_gap in zip(gaps, doubled, strict=True)
     )
@@ -129,7 +129,7 @@ def test_requests_are_retried_before_the_dead_man_timer_ends_a_program() -> None
                 [start_ms, *(sent_ms for sent_ms, _ in list_packets(session, late_ms))]
             )
         ]
-        assert gaps and max(gaps) <= MOST_RETRY_MS < messages.DEAD_MAN_MS / 2
+        assert gaps and max(gaps) <= MAX_RETRY_MS < messages.DEAD_MAN_MS / 2
         session.receive(answer(data, {"state": 1, "run": 1, "place": b""}), late_ms)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tiniscript.link.wire import MOST_BYTES, Wire
+from tiniscript.link.wire import MAX_BYTES, Wire
 
 
 class Port:
@@ -43,7 +43,7 @@ def test_receive_waits_for_the_first_byte_and_then_for_silence() -> None:
 
 def test_receive_does_not_listen_for_ever() -> None:
     port = Port(*[b"x" * 100] * 1000)
-    assert MOST_BYTES <= len(Wire(port).receive(500)) < MOST_BYTES + 100
+    assert MAX_BYTES <= len(Wire(port).receive(500)) < MAX_BYTES + 100
 
 
 def test_a_board_restarts_when_its_control_lines_return() -> None:

@@ -202,8 +202,8 @@ class HostFirmware(Process):
 
     def _turn(self, session: Session, data: bytes, limit_ms: int, flags: int = 0) -> None:
         """Let a millisecond pass, or more while neither side sends."""
-        wakes_ms = session.next_wake_ms()
-        quiet_ms = limit_ms if wakes_ms is None else min(limit_ms, wakes_ms - self.now_ms)
+        wake_ms = session.next_wake_ms()
+        quiet_ms = limit_ms if wake_ms is None else min(limit_ms, wake_ms - self.now_ms)
         if data or flags or quiet_ms < 2:
             sent_bytes = self.step(data, flags)
         else:

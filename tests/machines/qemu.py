@@ -37,7 +37,7 @@ from tools.builds import chips
 if TYPE_CHECKING:
     from tests.machines import Senses
 
-MOST_SECONDS = 60  # timeout of one answer
+MAX_SECONDS = 60  # timeout of one answer
 QUIET = ("-m", "16M", "-nodefaults", "-display", "none", "-serial", "none", "-monitor", "none")
 
 
@@ -69,7 +69,7 @@ class Emulated(Process):
         return answers
 
     def ask(self, letter: bytes, request: bytes) -> bytes:
-        watch = Timer(MOST_SECONDS, self.end)
+        watch = Timer(MAX_SECONDS, self.end)
         watch.start()
         try:
             return super().ask(letter, request)

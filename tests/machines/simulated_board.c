@@ -33,7 +33,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-enum { MOST = 256, MOST_CHANGES = 1 << 14 };
+enum { MOST = 256, MAX_CHANGES = 1 << 14 };
 
 static avr_t* avr;
 
@@ -52,7 +52,7 @@ static struct change {
   unsigned long long cycle;
   struct wire wire;
   int level;
-} changes[MOST_CHANGES];
+} changes[MAX_CHANGES];
 static int change_count;
 
 static struct ping {
@@ -228,7 +228,7 @@ static void read_script(void) {
       fprintf(stderr, "not understood: %s", line);
       exit(2);
     }
-    if (watch_count == MOST || change_count == MOST_CHANGES || ping_count == MOST ||
+    if (watch_count == MOST || change_count == MAX_CHANGES || ping_count == MOST ||
         conversion_count == MOST)
       exit(2);
   }

@@ -78,18 +78,18 @@ class SketchBoard(boards.Simulated):
 
     def run_for(self, ms: float) -> Ran:
         board = self.robot.board
-        devices = [actuator.pins["pin"] for actuator in board.actuators]
-        devices += [
+        device_pins = [actuator.pins["pin"] for actuator in board.actuators]
+        device_pins += [
             pin for key, pin in board.motors.pins.items() if key in ("standby", *SERVO_KEYS)
         ]
         self.watched |= set(TIMER_2.values())
-        for pin in {*board.motors.pins.values(), *devices}:
+        for pin in {*board.motors.pins.values(), *device_pins}:
             self.watch(pin)
-        return self._parse_output(self.simulate(self.elf, ms), devices)
+        return self._parse_output(self.simulate(self.elf, ms), device_pins)
 
-    def _parse_output(self, printed_text: str, devices: list[int]) -> Ran:
+    def _parse_output(self, printed_text: str, device_pins: list[int]) -> Ran:
         register_values: dict[int, int] = {}
-        run = Ran([], [], {pin: [] for pin in devices}, "", [])
+        run = Ran([], [], {pin: [] for pin in device_pins}, "", [])
         letters = bytearray()
         for line in printed_text.splitlines():
             words = line.split()
@@ -103,7 +103,7 @@ class SketchBoard(boards.Simulated):
                 ms = int(words[0]) / MS
                 _note(run.motors, ms, self._motors(register_values))
                 _note(run.tones, ms, (self._hertz(register_values),))
-                for pin in devices:
+                for pin in device_pins:
                     _note(run.pins[pin], ms, (self._level(register_values, pin),))
         return run._replace(text=letters.decode("ascii"))
 

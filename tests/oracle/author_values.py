@@ -47,7 +47,7 @@ WIDE_RANGE_NUMBERS = (
 )
 LONG_DECIMALS = ("0.0005", "1.2345", "2.71828", "3.00049", "99.9995", "0.33333333333333")
 BIG_NUMBERS = ("2147483.647", "2147483", "2000000", "1073741.824", "46340.95", "999999.999")
-LEAST_NUMBER = "-2147483.648"
+MIN_NUMBER = "-2147483.648"
 
 _PLAIN = re.compile(r"-?[0-9.]+")
 
@@ -105,7 +105,7 @@ class ValueAuthor:
             return [f"{self.rng.uniform(0, 200):.{self.rng.randint(1, 3)}f}"]
         if roll < 0.97:
             return [self.rng.choice(LONG_DECIMALS)]
-        return [self.rng.choice(BIG_NUMBERS)] if self.chance(0.7) else [LEAST_NUMBER]
+        return [self.rng.choice(BIG_NUMBERS)] if self.chance(0.7) else [MIN_NUMBER]
 
     def choose_name(self, is_yes_no: bool) -> Tokens | None:
         """A variable or a sensor of the kind, if there is one."""

@@ -28,7 +28,7 @@ IMAGE = Struct(
     "later" / Bytes(this.header_length - HEADER.sizeof()),
     "code" / Bytes(this.code_length),
 )
-NEEDS, STARTS, PING, MOST_BYTES = 3, 3, 2, 32767
+NEEDS, STARTS, PING, MAX_BYTES = 3, 3, 2, 32767
 VERSIONS = spec_tables.versions()
 MAJOR, MINOR = max(VERSIONS)
 
@@ -61,7 +61,7 @@ def refusal(data: bytes) -> str:
     if len(data) < HEADER.sizeof():
         return "TRUNCATED"
     head = HEADER.parse(data)
-    if head.header_length < HEADER.sizeof() or head.code_length > MOST_BYTES:
+    if head.header_length < HEADER.sizeof() or head.code_length > MAX_BYTES:
         return "BAD_HEADER"
     whole_length = head.header_length + head.code_length
     if len(data) != whole_length:

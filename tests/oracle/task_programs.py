@@ -13,7 +13,7 @@ SIDES = ("-50", "0", "20", "40")
 SENSORS = ("DISTANCE", "LIGHT_L", "PAD_X")
 VARIABLES = ("A", "N")
 YES_NO = "Q"  # a value of a DEF
-MOST_TASKS = 4
+MAX_TASKS = 4
 DEPTH = 3  # blocks of one task
 
 
@@ -38,7 +38,7 @@ class TaskAuthor:
             self.defs[name], self.own = self.own, []
             if YES_NO in self.defs[name]:  # the first call determines its kind
                 self.lines += ["IF(FALSE)", self.call(name), "ENDIF"]
-        tasks = rng.randint(1, MOST_TASKS)
+        tasks = rng.randint(1, MAX_TASKS)
         when_counts = sorted(rng.randint(0, 3) for _ in range(tasks))
         for place in range(4):
             for _ in range(when_counts.count(place)):

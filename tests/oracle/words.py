@@ -31,7 +31,7 @@ REMOTE = (
     Device("PAD_X", False, -100_000, 100_000),
     Device("PAD_Y", False, -100_000, 100_000),
 )
-MOST_BESIDE_REMOTE = 8  # sensors of a kit
+MAX_BESIDE_REMOTE = 8  # sensors of a kit
 
 
 class Kit(NamedTuple):
@@ -46,7 +46,7 @@ class Kit(NamedTuple):
     @property
     def readings(self) -> tuple[Device, ...]:
         """Return the sensors, and the remote control if there is room, by their numbers."""
-        has_room = self.has_remote and len(self.sensors) <= MOST_BESIDE_REMOTE
+        has_room = self.has_remote and len(self.sensors) <= MAX_BESIDE_REMOTE
         return self.sensors + (REMOTE if has_room else ())
 
 

@@ -11,7 +11,7 @@ from tests.support.platformio import firmware, shared_folder
 from tools import uno
 from tools.bench import avr_bench, machine, sizes, sketch_cycles
 from tools.bench.workloads import (
-    MOST_CYCLES,
+    MAX_CYCLES,
     WORKLOADS,
     Workload,
     WrongResult,
@@ -37,7 +37,7 @@ def test_a_wrong_value_raises_an_error(work: Workload) -> None:
 @needs_chip
 @pytest.mark.parametrize(
     ("work", "must"),
-    [pytest.param(*row, id=row[0].name) for row in zip(WORKLOADS, MOST_CYCLES, strict=True)],
+    [pytest.param(*row, id=row[0].name) for row in zip(WORKLOADS, MAX_CYCLES, strict=True)],
 )
 def test_cycles_are_within_their_limits(work: Workload, must: float) -> None:
     assert 1 < machine.per_iteration(work) <= must

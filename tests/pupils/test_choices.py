@@ -8,7 +8,7 @@ from tests.pupils.corpus import check
 from tiniscript.base.kit import Kit
 from tiniscript.base.source import Edit, Span
 from tiniscript.diagnostics.codes import Diagnostic
-from tiniscript.diagnostics.fixing import MOST_CHECKS, is_better, repair_program
+from tiniscript.diagnostics.fixing import MAX_CHECKS, is_better, repair_program
 from tiniscript.library import compiling
 
 
@@ -34,11 +34,11 @@ def test_a_program_is_checked_a_limited_number_of_times() -> None:
 
     def endless(text: str) -> list[Diagnostic]:
         texts.append(text)
-        return [missing] * (2 * MOST_CHECKS - len(texts))
+        return [missing] * (2 * MAX_CHECKS - len(texts))
 
     assert (
-        repair_program("F(2 80)", endless).repair_count == MOST_CHECKS - 1
-        and len(texts) == MOST_CHECKS
+        repair_program("F(2 80)", endless).repair_count == MAX_CHECKS - 1
+        and len(texts) == MAX_CHECKS
     )
 
 

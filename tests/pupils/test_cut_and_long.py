@@ -8,12 +8,12 @@ import pytest
 
 from tests.pupils.corpus import check, entries
 from tests.support.checking_work import calls_of_check
-from tiniscript.recovery.told import MOST_CHARACTERS
+from tiniscript.recovery.told import MAX_CHARACTERS
 
 WORDS = re.compile(r"\w+|[^\w\s]")
 # Calls for each character: of a row so long that it is read word by word, and of one that is read
 # as a whole. If each word reads the whole row, there are far more.
-MOST_CALLS, MOST_CALLS_WHOLE = 250, 8_000
+MAX_CALLS, MAX_CALLS_WHOLE = 250, 8_000
 
 
 @pytest.mark.parametrize(
@@ -53,5 +53,5 @@ def test_all_cut_programs_end() -> None:
 )
 def test_a_long_line_is_read_once(program: str) -> None:
     assert any(diagnostic.is_mistake for diagnostic in check(program))
-    max_calls_per_character = MOST_CALLS if len(program) > MOST_CHARACTERS else MOST_CALLS_WHOLE
+    max_calls_per_character = MAX_CALLS if len(program) > MAX_CHARACTERS else MAX_CALLS_WHOLE
     assert calls_of_check(program) < max_calls_per_character * len(program)

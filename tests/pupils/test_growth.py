@@ -25,7 +25,7 @@ def test_a_long_text_takes_no_more_than_in_proportion(opening: str, piece: str, 
 
 
 MISTAKES = 100
-MOST_CALLS = 3_000  # most calls per character of a text of this size
+MAX_CALLS = 3_000  # most calls per character of a text of this size
 REPEATED = [
     *("FOR I = 1 TO 5;F(1, 50);NEXT I", "X{k} = {k} m", "F(5, 60) HASTA(PARED < 10 seg)"),
     *("SIDE = 30 CM;W(SIDE)", "{k}. F(1, 50)", "IF(KEY = UP);S;ENDIF", "F(1, 60, R)", "F(50; 2)"),
@@ -41,4 +41,4 @@ def test_many_mistakes_take_no_more_than_in_proportion(mistake: str, separator: 
     one = mistake.replace("{k}", "1")
     compile_source(one.encode(), ROBOT, "prog.ts", is_strict=False)  # the tables are read
     text = "".join(mistake.replace("{k}", str(k)) + separator for k in range(MISTAKES))
-    assert calls_of_check(text) < MOST_CALLS * len(text)
+    assert calls_of_check(text) < MAX_CALLS * len(text)

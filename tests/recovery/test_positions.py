@@ -18,8 +18,9 @@ from tiniscript.base.kit import Kit
 from tiniscript.diagnostics.codes import Code
 from tiniscript.library.compiling import analyze
 from tiniscript.recovery import rewrites, rows
-from tiniscript.recovery.meanings import WORD_OF_END, lexemes, texts
+from tiniscript.recovery.meanings import lexemes, texts
 from tiniscript.recovery.search import Candidate, Recovery
+from tiniscript.syntax.blocks import WORD_OF_END
 
 KITS = [robots.load(name).kit for name in ("tinibot", "grabber", "liner")]
 PLACES_ON_A_LINE = ("W(3);{}", "{};W(3)", "W(3);{};W(3)")

@@ -375,7 +375,7 @@ def test_shown_values_are_short_and_printable() -> None:
 
 FILES: list[tuple[str, bytes | None]] = [
     ("file_missing", None),
-    ("file_too_large", b"#" * (robots.MOST_FILE_BYTES + 1)),
+    ("file_too_large", b"#" * (robots.MAX_FILE_BYTES + 1)),
     ("file_not_utf8", b'[kit]\n# caf\xe9 = "x"\n'),
     ("file_is_directory", None),
     ("file_unreadable", None),

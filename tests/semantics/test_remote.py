@@ -73,7 +73,7 @@ def test_a_program_without_remote_readings_has_an_unchanged_image(
 
     now = images()
     assert sum(map(bool, now)) > 300
-    monkeypatch.setattr(kits, "MOST_SENSORS_BESIDE_REMOTE", -1)
+    monkeypatch.setattr(kits, "MAX_SENSORS_BESIDE_REMOTE", -1)
     assert TINIBOT.readings == TINIBOT.sensors
     assert images() == now
 

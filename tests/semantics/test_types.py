@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tiniscript import check_text, robots
-from tiniscript.diagnostics.codes import MOST_DIAGNOSTICS
+from tiniscript.diagnostics.codes import MAX_DIAGNOSTICS
 
 KIT = robots.load("tinibot").kit
 
@@ -28,11 +28,11 @@ def test_the_position_of_a_condition_does_not_matter() -> None:
 
 
 def test_an_ambiguous_sensor_name_lists_the_sensors() -> None:
-    diagnostics = check_text(";".join(["SHOW(LIGHT)"] * (MOST_DIAGNOSTICS + 3)), KIT).diagnostics
-    assert len(diagnostics) == MOST_DIAGNOSTICS + 1
+    diagnostics = check_text(";".join(["SHOW(LIGHT)"] * (MAX_DIAGNOSTICS + 3)), KIT).diagnostics
+    assert len(diagnostics) == MAX_DIAGNOSTICS + 1
     assert (
         diagnostics[0].values["first"] == "LIGHT_R" and diagnostics[0].values["second"] == "LIGHT_L"
     )
     assert ["first" in diagnostic.values for diagnostic in diagnostics] == [
         True
-    ] * MOST_DIAGNOSTICS + [False]
+    ] * MAX_DIAGNOSTICS + [False]

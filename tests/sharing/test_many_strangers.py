@@ -25,7 +25,7 @@ import pytest
 from tests.support.command import run_subprocess
 from tests.support.port_strangers import drive_robot, registration_of, say_all
 from tests.support.waiting import HANG_LIMIT_S
-from tiniscript.studio.serving import MOST_CONNECTIONS
+from tiniscript.studio.serving import MAX_CONNECTIONS
 
 pytestmark = pytest.mark.skipif(
     sys.platform != "linux", reason="only Linux says what a process has"
@@ -196,7 +196,7 @@ def attack_studio(count: int) -> list[tuple[str, Usage, Usage, Usage]]:
             usage_before = measure_process(pid)
             with visitors(port, kind, count):
                 assert page(port) == b"<!doctype html>"
-                usage_during = wait_until_settled(pid, usage_before.files + MOST_CONNECTIONS + 3)
+                usage_during = wait_until_settled(pid, usage_before.files + MAX_CONNECTIONS + 3)
             children.append(
                 (kind, usage_before, usage_during, wait_until_settled(pid, usage_before.files + 3))
             )
@@ -206,7 +206,7 @@ def attack_studio(count: int) -> list[tuple[str, Usage, Usage, Usage]]:
 
 def test_the_studio_serves_its_page_among_many_strangers() -> None:
     for kind, usage_before, usage_during, usage_after in attack_studio(CONNECTION_COUNT):
-        assert usage_during.files <= usage_before.files + MOST_CONNECTIONS + 3, kind
+        assert usage_during.files <= usage_before.files + MAX_CONNECTIONS + 3, kind
         assert usage_after.files <= usage_before.files + 3, kind
         assert usage_after.memory_kb <= usage_before.memory_kb + ALLOWED_GROWTH_KB, kind
 

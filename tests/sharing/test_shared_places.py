@@ -8,7 +8,7 @@ from tests.support.images import image_of
 from tests.support.shared_pty_robot import SharedLine
 from tests.support.waiting import HANG_LIMIT_S
 from tiniscript.link.connection import LinkConnection
-from tiniscript.link.outcomes import MOST_EVENTS, Backlog, Event, PlaceEvent, ShownEvent
+from tiniscript.link.outcomes import MAX_EVENTS, Backlog, Event, PlaceEvent, ShownEvent
 from tiniscript.link.requests import OK
 from tiniscript.link.sharing.shared_connection import join
 
@@ -51,8 +51,8 @@ def test_only_subscribed_clients_get_places() -> None:
 
 def test_an_unread_backlog_keeps_only_the_newest_place() -> None:
     backlog = Backlog()
-    backlog.add_events((k, PlaceEvent(1, 2, k)) for k in range(2 * MOST_EVENTS))
+    backlog.add_events((k, PlaceEvent(1, 2, k)) for k in range(2 * MAX_EVENTS))
     backlog.add_events([(0, ShownEvent(1, 0))])
-    assert backlog.take_event() == (2 * MOST_EVENTS - 1, PlaceEvent(1, 2, 2 * MOST_EVENTS - 1))
+    assert backlog.take_event() == (2 * MAX_EVENTS - 1, PlaceEvent(1, 2, 2 * MAX_EVENTS - 1))
     assert backlog.take_event()[1] == ShownEvent(1, 0)
     assert not backlog

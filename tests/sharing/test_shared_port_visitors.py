@@ -20,7 +20,7 @@ from tiniscript.link.outcomes import ShownEvent
 from tiniscript.link.payloads import DoneEvent
 from tiniscript.link.sharing import protocol, registry
 from tiniscript.link.sharing.registry import Registration
-from tiniscript.link.sharing.server import FULL_BYTES, MOST_CLIENTS
+from tiniscript.link.sharing.server import FULL_BYTES, MAX_CLIENTS
 
 
 def greeting(registration: Registration, **changes: object) -> bytes:
@@ -45,7 +45,7 @@ def test_too_many_silent_visitors_drop_the_oldest(monkeypatch: pytest.MonkeyPatc
     monkeypatch.setattr("tiniscript.link.sharing.server.GREETING_S", 600.0)
     with SharedLine() as (_, registration), ExitStack() as opened_exit_stack:
         silent_peers = [
-            opened_exit_stack.enter_context(visitor(registration)) for _ in range(MOST_CLIENTS + 10)
+            opened_exit_stack.enter_context(visitor(registration)) for _ in range(MAX_CLIENTS + 10)
         ]
         assert all(is_let_go(peer) for peer in silent_peers[:10])
         silent_peers[10].settimeout(0.2)

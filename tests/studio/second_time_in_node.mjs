@@ -794,7 +794,7 @@ const PARTS = {
     Object.assign(window, { AudioContext: Context });
     globalThis.AudioContext = Context;
     const { Sounds } = await page.load('virtual/sounds.js');
-    const LATE_MS = 500, OPEN_MS = 3000, LEAST_MS = 10, CRASH_MS = 180;
+    const LATE_MS = 500, OPEN_MS = 3000, MIN_MS = 10, CRASH_MS = 180;
     return async (random) => {
       const sounds = new Sounds();
       heard.length = 0;
@@ -810,7 +810,7 @@ const PARTS = {
         const begins_ms = Math.max(now(), last_ms);
         if (!open() || begins_ms - now() > LATE_MS) return;
         last_ms = begins_ms + duration_ms;
-        wanted.push([begins_ms, begins_ms + Math.max(LEAST_MS, duration_ms), Math.max(20, Math.min(16_000, hertz))]);
+        wanted.push([begins_ms, begins_ms + Math.max(MIN_MS, duration_ms), Math.max(20, Math.min(16_000, hertz))]);
       };
       const silence = () => {
         for (const item of wanted) item[1] = Math.min(item[1], now());
@@ -1195,7 +1195,7 @@ const PARTS = {
   async again() {
     const page = freshPage();
     const { Run } = await page.load('virtual/runs.js');
-    const MOST_MARKS = 10_000;
+    const MAX_MARKS = 10_000;
     // Line by line: F, a WHEN with a B, another with an L.
     const text = 'F(1)\nWHEN(KEY_A)\nB(1)\nEND_WHEN\nWHEN(KEY_B)\nL(1)\nEND_WHEN';
     const places = [[0, 1, 1, 1, 5], [2, 2, 1, 4, 9], [4, 3, 1, 3, 5], [6, 5, 1, 7, 9], [8, 6, 1, 6, 5]];
@@ -1212,7 +1212,7 @@ const PARTS = {
       let now_ms = random.below(100), bumps = 0, parting = null, begun = [], end_ms = run.end_ms;
       const mark = (at_ms, kind) => {
         marks.push({ at_ms, kind });
-        if (marks.length > MOST_MARKS) marks.splice(0, MOST_MARKS / 2);
+        if (marks.length > MAX_MARKS) marks.splice(0, MAX_MARKS / 2);
       };
       const add = (count) => {
         now_ms += 1 + random.below(90);
@@ -2830,7 +2830,7 @@ const PARTS = {
   // The worlds that were drawn or opened, in a tab that is loaded again: the newest and those before it are there as they were
   // when they were last kept, but those that no file can say, and those that nobody can read.
   async worlds() {
-    const MOST_EARLIER = 5;
+    const MAX_EARLIER = 5;
     return async (random) => {
       const page = freshPage();
       await loadTexts(page);
@@ -2860,7 +2860,7 @@ const PARTS = {
       const setRoom = (hasRoom) => { window.localStorage.room = window.sessionStorage.room = hasRoom ? Infinity : 0; };
       const setNewest = (world, isOther) => {
         const [before, ...earlier] = worlds;
-        worlds = [world, ...isOther && before ? [before] : [], ...earlier].slice(0, 1 + MOST_EARLIER);
+        worlds = [world, ...isOther && before ? [before] : [], ...earlier].slice(0, 1 + MAX_EARLIER);
       };
       const actions = {
         draw() {
@@ -2869,7 +2869,7 @@ const PARTS = {
           own.setNewest(world, isOther);
         },
         earlier() {
-          const index = random.below(MOST_EARLIER), [, ...earlier] = worlds, world = earlier[index];
+          const index = random.below(MAX_EARLIER), [, ...earlier] = worlds, world = earlier[index];
           own.restoreEarlier(index);
           if (!world) return;
           worlds = [worlds[0], ...earlier.filter((item) => item !== world)];
@@ -3003,7 +3003,7 @@ const PARTS = {
     const { pageState } = await page.load('page/page_state.js');
     const { Programs } = await page.load('programs/programs.js');
     const { loadWork } = await page.load('programs/work.js');
-    const { MOST_CHARACTERS, loadVersions, storeVersion } = await page.load('programs/versions.js');
+    const { MAX_CHARACTERS, loadVersions, storeVersion } = await page.load('programs/versions.js');
     const { makeLink } = await page.load('programs/links.js');
     const { text: textOf } = await page.load('page/texts.js');
     const { FIRST_PROGRAM } = await page.load('start/beginnings.js');
@@ -3033,10 +3033,10 @@ const PARTS = {
       if (JSON.stringify(shown) !== JSON.stringify(expected)) throw new Error(`the window shows ${JSON.stringify(shown)} in place of ${JSON.stringify(expected)}`);
     };
     const fits = (versions) => versions.length <= 40 && JSON.stringify(versions).length <= store.roomFor('tiniscript.versions')
-      && (versions.length < 2 || versions.reduce((sum, { text }) => sum + text.length, 0) <= MOST_CHARACTERS);
+      && (versions.length < 2 || versions.reduce((sum, { text }) => sum + text.length, 0) <= MAX_CHARACTERS);
     /** The newest are kept, as many as there is room for; where not even one is, all stay that were there. @returns whether this one is there */
     const checkKept = (act, before, expected, version) => {
-      let fitCount = version?.text.length > MOST_CHARACTERS ? 0 : expected.length;
+      let fitCount = version?.text.length > MAX_CHARACTERS ? 0 : expected.length;
       while (fitCount && !fits(expected.slice(0, fitCount))) fitCount -= 1;
       const kept = fitCount || !expected.length ? expected.slice(0, fitCount) : before;
       if (inForm(loadVersions()) !== inForm(kept)) throw new Error(`${act}: ${loadVersions().length} are kept in place of ${kept.length} of ${expected.length}`);
@@ -3438,7 +3438,7 @@ const PARTS = {
     const { Runs } = await page.load('virtual/runs.js');
     const { pageState } = await page.load('page/page_state.js');
     const { text: textOf } = await page.load('page/texts.js');
-    const MOST_EVENTS = 10_000, MOST_MS = 600_000, MOST_PROGRAMS = 20;
+    const MAX_EVENTS = 10_000, MAX_MS = 600_000, MAX_PROGRAMS = 20;
     const runs = new Runs();
     let trims = 0;
     page.byId('record_play').hidden = true; // as in index.html
@@ -3448,7 +3448,7 @@ const PARTS = {
       const text = `// ${name}${isSensing ? ' DISTANCE' : ''}`;
       pageState.robotName.set('tinibot');
       pageState.programText.set(text);
-      sentPrograms = [...sentPrograms.filter((item) => item.name !== name), { name, text }].slice(-MOST_PROGRAMS);
+      sentPrograms = [...sentPrograms.filter((item) => item.name !== name), { name, text }].slice(-MAX_PROGRAMS);
       recorder.addProgram({ program: name, places: [], shows: [], variables: [] });
     };
     let ownEvents = []; // what the newest run of ours has told, and when
@@ -3466,7 +3466,7 @@ const PARTS = {
     const endRun = (event) => {
       goOn();
       if (!isOpen) return;
-      end_ms = Math.min(elapsed(), MOST_MS);
+      end_ms = Math.min(elapsed(), MAX_MS);
       ownEvents.push([end_ms, event]);
       isOpen = false;
       endedCount += 1;
@@ -3478,7 +3478,7 @@ const PARTS = {
       isOpen = ran !== null;
       [began, byButton, end_ms] = [at, at === null, null];
     };
-    const isFull = (at_ms) => ownEvents.length >= MOST_EVENTS || at_ms > MOST_MS;
+    const isFull = (at_ms) => ownEvents.length >= MAX_EVENTS || at_ms > MAX_MS;
     const reportRows = (rows) => {
       if (isOpen) for (const row of rows) {
         began ??= now() - row[0];
@@ -3561,7 +3561,7 @@ const PARTS = {
         if (k === 2 && random() < 0.08) {
           end = 'flood';
           actions.ours(random);
-          reportRows(Array.from({ length: MOST_EVENTS + random.of([0, 9]) }, () => [elapsed(), 'READ DISTANCE 5']));
+          reportRows(Array.from({ length: MAX_EVENTS + random.of([0, 9]) }, () => [elapsed(), 'READ DISTANCE 5']));
         } else await actions[end](random);
         acted.add(end);
         await wait(random.below(300));
@@ -3571,9 +3571,9 @@ const PARTS = {
         const run = runs.newestFirst[0];
         assertSame(run.rows, ownEvents, 'its rows');
         assertSame([run.origin.text, run.origin.is_by_button, run.end_ms], [ran.text, byButton, end_ms], 'of which program, and until when');
-        assertSame(run.readClock(), Math.min(MOST_MS, elapsed()), 'its clock');
+        assertSame(run.readClock(), Math.min(MAX_MS, elapsed()), 'its clock');
         const older = runs.newestFirst[1];
-        if (older) assertSame(older.readClock(), Math.min(MOST_MS, older.rows.at(-1)?.[0] ?? 0), 'the clock of the one before');
+        if (older) assertSame(older.readClock(), Math.min(MAX_MS, older.rows.at(-1)?.[0] ?? 0), 'the clock of the one before');
         const notice = unread ? textOf('record_incomplete', { sensors: 'DISTANCE' }) : lacksReadings && ran.text.includes('DISTANCE') ? textOf('record_no_readings') : '';
         const place = page.byId('record_lacks');
         if (['meet', 'ours', 'awaitButton'].includes(end)) isTold = end !== 'meet'; // what a robot that is met tells is of the next run

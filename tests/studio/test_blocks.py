@@ -33,7 +33,7 @@ from tiniscript.studio.block_form import (
 from tiniscript.studio.block_kinds import KINDS
 from tiniscript.studio.block_printing import format_blocks
 from tiniscript.studio.block_reading import read_blocks
-from tiniscript.studio.worker import MOST_BLOCKS, answer
+from tiniscript.studio.worker import MAX_BLOCKS, answer
 from tiniscript.syntax.formatter import format_source
 
 TINIBOT = robots.load("tinibot").kit
@@ -269,11 +269,11 @@ def test_the_page_requests_blocks_and_text() -> None:
 
 def test_a_very_long_program_stays_text() -> None:
     request_text = '{"do": "blocks", "robot": "tinibot"}'
-    short_program, long_program = (b"S;" * count for count in (MOST_BLOCKS, MOST_BLOCKS + 1))
-    assert len(json.loads(answer(request_text, short_program))["body"]) == MOST_BLOCKS
-    assert json.loads(answer(request_text, long_program)) == {"size": MOST_BLOCKS + 1}
-    deep_program = f"X = {'(' * 5000}1{')' * 5000}{' + 1' * MOST_BLOCKS}"
-    assert json.loads(answer(request_text, deep_program.encode())) == {"size": 2 * MOST_BLOCKS + 2}
+    short_program, long_program = (b"S;" * count for count in (MAX_BLOCKS, MAX_BLOCKS + 1))
+    assert len(json.loads(answer(request_text, short_program))["body"]) == MAX_BLOCKS
+    assert json.loads(answer(request_text, long_program)) == {"size": MAX_BLOCKS + 1}
+    deep_program = f"X = {'(' * 5000}1{')' * 5000}{' + 1' * MAX_BLOCKS}"
+    assert json.loads(answer(request_text, deep_program.encode())) == {"size": 2 * MAX_BLOCKS + 2}
     assert size_of(read_blocks("/// F(1, 2)", TINIBOT)) == 3
 
 
@@ -298,7 +298,7 @@ def test_the_beginning_of_a_program_shows_its_first_blocks(program: Program) -> 
 
 
 def test_the_page_requests_the_beginning() -> None:
-    text = ";".join(["SHOW(1)"] * (2 * MOST_BLOCKS))
+    text = ";".join(["SHOW(1)"] * (2 * MAX_BLOCKS))
     request = {"do": "blocks", "robot": "tinibot"}
     assert set(json.loads(answer(json.dumps(request), text.encode()))) == {"size"}
     form = json.loads(answer(json.dumps({**request, "first": 150}), text.encode()))

@@ -11,7 +11,7 @@ from tests.pupils import corpus
 from tests.studio.programs import MISSING_PART_CODES, messages_of
 from tests.support.texts import LANGUAGES
 from tiniscript import check, compile, compile_text, robots
-from tiniscript.diagnostics.fixing import MOST_OFFERS, repair_program
+from tiniscript.diagnostics.fixing import MAX_OFFERS, repair_program
 from tiniscript.diagnostics.rendering import Message
 from tiniscript.library.compiling import Compilation, compile_source
 from tiniscript.studio import checking, worker
@@ -147,7 +147,7 @@ def test_some_mistakes_are_not_repaired() -> None:
     repairs = buttons("SI|F(2, 80~1A2B")
     assert repairs and not any(repairs)
     repairs = buttons("SI|" + "F(2, 80\n" * 90)
-    assert 0 < sum(map(bool, repairs)) <= MOST_OFFERS < len(repairs)
+    assert 0 < sum(map(bool, repairs)) <= MAX_OFFERS < len(repairs)
 
 
 def test_a_file_is_read_like_in_the_command_or_refused_with_a_message() -> None:
@@ -296,7 +296,7 @@ def test_a_typed_letter_costs_one_compilation_and_a_button_at_most_two(
     )
     findings = checking.check(text.encode(), "tinibot", "en").findings
     assert len(texts) == 1 and sum(finding.may_repair for finding in findings) == (
-        1 if wrong_end else MOST_OFFERS
+        1 if wrong_end else MAX_OFFERS
     )
     finding_index = next(k for k, finding in enumerate(findings) if finding.may_repair)
     assert checking.repair(text.encode(), "tinibot", finding_index)

@@ -16,7 +16,7 @@ from typing import Any
 import pytest
 
 from tests.support.class_room import FakeRobot, Room, without_ports
-from tiniscript.studio.class_keeping import MOST_PUPILS
+from tiniscript.studio.class_keeping import MAX_PUPILS
 from tiniscript.studio.classroom import PLACE_S, PRESENCE_S, QUEUE_S, REST_S
 from tiniscript.studio.robot_link import BadRequest
 
@@ -48,7 +48,7 @@ class History:
     def __init__(self, rng: Random) -> None:
         self.rng = rng
         self.room = Room(ROBOTS)
-        self.room.teach("class_places", places=MOST_PUPILS)
+        self.room.teach("class_places", places=MAX_PUPILS)
         self.pages: dict[str, Page] = {}
         self.gone_pages: dict[str, Page] = {}  # pages whose work is kept, by name
         self.brought_texts: set[str] = set()
@@ -324,7 +324,7 @@ class History:
             assert handout["text"] == self.offered(page)
         next_lesson = Room(0)  # it has handed out nothing yet
         next_lesson.classroom.resume(kept_state, is_same_lesson=False)
-        code = next_lesson.teach("class_places", places=MOST_PUPILS)["code"]
+        code = next_lesson.teach("class_places", places=MAX_PUPILS)["code"]
         for page in (*self.pages.values(), *self.gone_pages.values()):
             request = {"do": "join", "code": code, "name": page.name, "before": page.token}
             token = next_lesson.classroom.answer("", "192.0.2.9", request)["token"]

@@ -312,14 +312,14 @@ def test_a_full_class_reassigns_places_of_absent_pupils() -> None:
     room.check_in(token, True)
     room.connect(token)
     room.now_s += 1
-    for k in range(1, class_keeping.MOST_PUPILS):
+    for k in range(1, class_keeping.MAX_PUPILS):
         room.join(f"p{k}", f"198.51.100.{k}")
     join_message = {"do": "join", "code": room.classroom.code, "name": "more"}
     room.now_s += 30
     assert room.classroom.answer("", PUPIL_ADDRESS, join_message) == {"failure": "class_full"}
     room.now_s += 31
     assert "token" in room.classroom.answer("", PUPIL_ADDRESS, join_message)
-    assert len(room.teach("class")["pupils"]) == class_keeping.MOST_PUPILS
+    assert len(room.teach("class")["pupils"]) == class_keeping.MAX_PUPILS
     assert room.classroom.most_bytes(token) > 0  # it is her turn
 
 
@@ -350,7 +350,7 @@ def test_reported_work_is_limited_and_plain() -> None:
     eve = room.join("Eve")
     room.check_in(eve, lessons=["01_first_line"] * 1000, robot="liner", is_right=False, hand=True)
     pupil = room.teach("class")["pupils"][0]
-    assert len(pupil["lessons"]) == class_keeping.MOST_LESSONS
+    assert len(pupil["lessons"]) == class_keeping.MAX_LESSONS
     assert (pupil["is_right"], pupil["hand"] > 0) == (False, True)
     for wrong_fields in (
         {"lessons": "01"}, {"lessons": ["<b>"]}, {"lessons": ["x" * 61]}, {"lessons": [5]},
@@ -432,9 +432,9 @@ def test_work_is_loaded_once_and_only_while_there_is_room() -> None:
         with pytest.raises(BadRequest):
             room.teach("class_bring", **{**work, **wrong_fields})
     for _ in range(2):  # a file is opened twice
-        for k in range(class_keeping.MOST_WORKS):
+        for k in range(class_keeping.MAX_WORKS):
             room.teach("class_bring", **{**work, "name": f"p{k}"})
-    assert len(room.teach("class")["kept"]) == class_keeping.MOST_WORKS
+    assert len(room.teach("class")["kept"]) == class_keeping.MAX_WORKS
     with pytest.raises(BadRequest):
         room.teach("class_bring", **{**work, "name": "more"})
     join_message = {"do": "join", "code": room.classroom.code, "name": "more"}
@@ -548,7 +548,7 @@ def test_no_name_overwrites_the_work_of_an_absent_pupil() -> None:
     ]  # fmt: skip
 
 
-@pytest.mark.parametrize("places", [classroom.PLACES_PER_ADDRESS, class_keeping.MOST_PUPILS])
+@pytest.mark.parametrize("places", [classroom.PLACES_PER_ADDRESS, class_keeping.MAX_PUPILS])
 def test_no_number_of_names_displaces_kept_work(places: int) -> None:
     """This holds for the names of one address and, if the teacher has allowed it, of a whole
     network."""
@@ -570,7 +570,7 @@ def test_no_number_of_names_displaces_kept_work(places: int) -> None:
         failures += [answer["failure"]] if "failure" in answer else []
     assert set(texts_of(room)) >= {f"SHOW({k})" for k in range(30)}
     works = len(room.teach("class_work")["pupils"])
-    assert works == min(30 + classroom.WORKS_PER_PLACE * places, class_keeping.MOST_WORKS)
+    assert works == min(30 + classroom.WORKS_PER_PLACE * places, class_keeping.MAX_WORKS)
     assert failures[-1] == (
         "class_crowded" if places == classroom.PLACES_PER_ADDRESS else "class_full"
     )
@@ -748,9 +748,9 @@ def test_a_damaged_class_continues_with_the_intact_parts(class_file: Path, keepe
     many_pupils = [{**row, "token": f"{k:032x}"} for k in range(99)]
     class_file.write_text(json.dumps({**class_data, "pupils": many_pupils, "kept": many_pupils}))
     room_after = Room(0)
-    assert resume_class(room_after, keeper) == class_keeping.MOST_PUPILS
+    assert resume_class(room_after, keeper) == class_keeping.MAX_PUPILS
     works = len(room_after.teach("class_work")["pupils"])
-    assert works == class_keeping.MOST_WORKS
+    assert works == class_keeping.MAX_WORKS
 
 
 def test_an_invalid_class_file_is_set_aside(class_file: Path, keeper: Keeper) -> None:
@@ -933,7 +933,7 @@ def test_the_end_of_a_class_reaches_every_page(erases: bool, end_reason: str) ->
 def test_the_rate_limit_remembers_a_thousand_names() -> None:
     rate = Rate(1, 0)
     assert rate.take_amount("a", 0) and not rate.take_amount("a", 0)
-    for k in range(rate_of.MOST_NAMES):
+    for k in range(rate_of.MAX_NAMES):
         assert rate.take_amount(f"b{k}", 0)
     assert rate.take_amount("a", 0)
 
@@ -1057,7 +1057,7 @@ def test_the_teacher_gets_the_newest_run_of_the_requested_pupil() -> None:
     "wrong_fields",
     [
         {"part": 1}, {"part": None}, {"from": 1}, {"from": -1}, {"from": "0"}, {"is_last": 1},
-        {"part": "x" * (recordings.MOST_BYTES + 1)},
+        {"part": "x" * (recordings.MAX_BYTES + 1)},
     ],
 )  # fmt: skip
 def test_mismatched_parts_of_a_run_are_refused(wrong_fields: Json) -> None:

@@ -129,7 +129,7 @@ def test_each_member_gets_each_run_in_order(seed: int) -> None:
             news = robot.tell()
             values_by_driver[robot.driver] += robot.all_values[count_before:]
             runs.add_news(robot.driver, [news])
-            assert len(runs._rows) == 1 or waiting_bytes(runs) <= group_runs.MOST_BYTES
+            assert len(runs._rows) == 1 or waiting_bytes(runs) <= group_runs.MAX_BYTES
         items = page.look()
         places = [item["at"] for item in items if item["event"] == "PLACE"]
         assert len(places) <= 1

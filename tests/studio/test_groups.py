@@ -19,7 +19,7 @@ from tests.support.class_room import PUPIL_ADDRESS, Room, without_ports
 from tests.support.journal_disk import before_each_write, full_disk
 from tests.support.waiting import HANG_LIMIT_S, until
 from tiniscript.studio import groups
-from tiniscript.studio.class_keeping import MOST_PUPILS
+from tiniscript.studio.class_keeping import MAX_PUPILS
 from tiniscript.studio.classroom import Classroom
 from tiniscript.studio.robot_link import BadRequest
 from tiniscript.together import journal as journals
@@ -39,7 +39,7 @@ class School(Room):
         super().__init__(robots)
         self.folder = folder
         self.classroom = self.anew(robots)
-        self.teach("class_places", places=MOST_PUPILS)
+        self.teach("class_places", places=MAX_PUPILS)
 
     def anew(self, robots: int = 1) -> Classroom:
         ports = [f"port{k}" for k in range(robots)]
@@ -83,7 +83,7 @@ class Member:
     def send(self, **fields: Any) -> Json:
         """Send pending changes, and receive news."""
         changes = [
-            data_of_change(change) for change in self.page.pending_changes[: groups.MOST_CHANGES]
+            data_of_change(change) for change in self.page.pending_changes[: groups.MAX_CHANGES]
         ]
         answer: Json = json.loads(
             json.dumps(self.ask("group", **self.request(changes=changes, **fields)))
@@ -150,7 +150,7 @@ def test_others_see_a_pupils_cursor_and_typing(school: School) -> None:
 
 
 def test_a_group_has_four_places_and_silent_pupils_lose_theirs(school: School) -> None:
-    members = [Member(school, f"P{k}") for k in range(groups.MOST_MEMBERS)]
+    members = [Member(school, f"P{k}") for k in range(groups.MAX_MEMBERS)]
     late_token = school.join("Late")
     request = {"do": "group_join", "name": "Red", "text": ""}
     assert school.classroom.answer(late_token, PUPIL_ADDRESS, request) == {"failure": "group_full"}
@@ -173,7 +173,7 @@ def test_only_a_program_can_start_a_group(school: School) -> None:
     assert begin_group("Red", f"// {'x' * 3000}\n") == {"failure": "group_long"}
     assert begin_group(" ", TEXT) == {"failure": "group_nameless"}
     assert school.teach("class")["groups"] == []
-    for k in range(groups.MOST_FOUNDED):
+    for k in range(groups.MAX_FOUNDED):
         assert begin_group(f"Group {k}", TEXT)["group"] == f"Group {k}"
         change = {"uid": "m1:1", "ops": [{"do": "delete", "ids": ["i.1"]}]}
         school.classroom.answer(token, PUPIL_ADDRESS,
@@ -198,7 +198,7 @@ def test_an_unchanged_group_ends_with_its_last_pupil(school: School) -> None:
 def test_a_waiting_page_is_notified_at_once_and_delays_nobody(
     school: School, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(groups, "MOST_HELD_S", 10 * HANG_LIMIT_S)
+    monkeypatch.setattr(groups, "MAX_HELD_S", 10 * HANG_LIMIT_S)
     ana, luz = Member(school, "Ana"), Member(school, "Luz")
     ana.send()
     luz.send()
@@ -215,7 +215,7 @@ def test_a_waiting_page_is_notified_at_once_and_delays_nobody(
 
 
 def test_a_page_holds_one_request(school: School, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(groups, "MOST_HELD_S", 10 * HANG_LIMIT_S)
+    monkeypatch.setattr(groups, "MAX_HELD_S", 10 * HANG_LIMIT_S)
     ana = Member(school, "Ana")
     ana.send()
     threads = []
@@ -231,7 +231,7 @@ def test_a_page_holds_one_request(school: School, monkeypatch: pytest.MonkeyPatc
 
 
 def test_a_held_request_ends(school: School, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(groups, "MOST_HELD_S", 0.05)
+    monkeypatch.setattr(groups, "MAX_HELD_S", 0.05)
     ana = Member(school, "Ana")
     ana.send()
     assert ana.ask("group", **ana.request(waits=True))["changes"] == []
@@ -240,7 +240,7 @@ def test_a_held_request_ends(school: School, monkeypatch: pytest.MonkeyPatch) ->
 def test_a_waiting_page_gets_robot_events_without_delaying_the_robot(
     school: School, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(groups, "MOST_HELD_S", 10 * HANG_LIMIT_S)
+    monkeypatch.setattr(groups, "MAX_HELD_S", 10 * HANG_LIMIT_S)
     ana, luz = Member(school, "Ana"), Member(school, "Luz")
     school.check_in(ana.token, True)
     robot = school.connect(ana.token)
@@ -424,7 +424,7 @@ def test_groups_continue_after_crashes_whenever_the_disk_was_full(
 ) -> None:
     """A second crash loses no more than the first one, and all that is typed then is taken."""
     rng, is_full, numbers = Random(seed), False, count(100)
-    monkeypatch.setattr(journals, "MOST_BYTES", 1500)
+    monkeypatch.setattr(journals, "MAX_BYTES", 1500)
 
     before_each_write(monkeypatch, lambda: full_disk() if is_full else None)
     members = [Member(school, "Ana"), Member(school, "Luz"), Member(school, "Teo", "Blue")]
@@ -495,7 +495,7 @@ def test_the_teacher_sees_a_group_as_one_entry_and_its_program(school: School) -
 
 
 def test_the_teacher_joins_and_leaves_a_group(school: School) -> None:
-    members = [Member(school, f"P{k}") for k in range(groups.MOST_MEMBERS)]
+    members = [Member(school, f"P{k}") for k in range(groups.MAX_MEMBERS)]
     [group] = school.teach("class")["groups"]
     teacher = Teacher(school, group["key"])
     assert teacher.page.lines == members[0].page.lines
@@ -513,7 +513,7 @@ def test_the_teacher_joins_and_leaves_a_group(school: School) -> None:
     [shown_group] = school.check_in(school.join("Late"))["groups"]
     assert shown_group["members"] == [member.name for member in members]
     teacher.ask("group_leave")
-    assert len(members[0].send()["others"]) == groups.MOST_MEMBERS - 1
+    assert len(members[0].send()["others"]) == groups.MAX_MEMBERS - 1
     assert teacher.ask("group", **teacher.request()) == {"left": True}
 
 
@@ -521,7 +521,7 @@ def test_the_teacher_takes_no_pupils_place(school: School) -> None:
     ana = Member(school, "Ana")
     [group] = school.teach("class")["groups"]
     teacher = Teacher(school, group["key"])
-    for k in range(groups.MOST_MEMBERS - 1):
+    for k in range(groups.MAX_MEMBERS - 1):
         Member(school, f"P{k}")
     late_token = school.join("Late")
     request = {"do": "group_join", "name": "Red", "text": ""}

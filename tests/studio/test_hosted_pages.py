@@ -17,7 +17,7 @@ from tiniscript.studio.robot_link import BadRequest
 
 Json = dict[str, Any]
 PORTS, PAGES, TABS = ("COM1", "com1", "COM2", "COM3"), ("a", "b", "c"), ("s", "t")
-MOST_ROBOTS = 2
+MAX_ROBOTS = 2
 
 
 class FakeAttending:
@@ -93,7 +93,7 @@ def test_a_port_has_one_page_and_a_page_one_robot(
         return robots[-1]
 
     monkeypatch.setattr(module, "HostedRobot", make)
-    monkeypatch.setattr(module, "MOST_ROBOTS", MOST_ROBOTS)
+    monkeypatch.setattr(module, "MAX_ROBOTS", MAX_ROBOTS)
     monkeypatch.setattr(module, "monotonic", lambda: now_s)
     monkeypatch.setattr(module, "canonical_port", str.upper)
     hosting = Hosting()
@@ -132,7 +132,7 @@ def test_a_port_has_one_page_and_a_page_one_robot(
             assert all(rival.state == "driving" for rival in rivals)
         else:
             assert all(rival.state == "parting" for rival in rivals), "no page refers to it"
-            if driving_count >= MOST_ROBOTS:
+            if driving_count >= MAX_ROBOTS:
                 assert answer == {"failure": "too_many"} and len(robots) == known_count
                 return
             assert answer == {} and len(robots) == known_count + 1

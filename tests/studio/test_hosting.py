@@ -556,7 +556,7 @@ def test_the_unread_event_queue_is_bounded() -> None:
     robot.attending.queue_news([{"event": "SHOW", "value": str(k)} for k in range(3000)])
     robot.attending.queue_news([{"event": "DONE"}])
     news = robot.attending.on_beat([], 0)
-    assert len(news) == attending.MOST_PENDING_NEWS and news[-1]["event"] == "DONE"
+    assert len(news) == attending.MAX_PENDING_NEWS and news[-1]["event"] == "DONE"
     robot.join(HANG_LIMIT_S)
 
 

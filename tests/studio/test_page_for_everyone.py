@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 # 1366x768 and 1280x1024 at 200 and 400 %, and a low window.
 LOW_SIZES = ((683, 384), (640, 512), (320, 256), (1024, 500))
 # The minimum width and height of an element.
-LEAST_SIZES = {"wrong": ("#editor", 0, 96), "blocks": ("#blocks", 300, 96), "drawing": ("#arena", 120, 120),
+MIN_SIZES = {"wrong": ("#editor", 0, 96), "blocks": ("#blocks", 300, 96), "drawing": ("#arena", 120, 120),
                "plot": ("#plot_place", 300, 60), "trace": ("#trace_place", 300, 60)}  # fmt: skip
 # The same where the page is scrolled: it is at most too long, and STOP lies over it.
 SCROLLED_LOOK_SCRIPT = LOOK_SCRIPT.replace(
@@ -102,8 +102,8 @@ def test_each_screen_is_fully_visible_and_axe_finds_nothing(
                 assert problems == [], (screen, size, end)
         if size in SCREENS:
             assert page.evaluate(CUT_CHOICES_SCRIPT) == [], (screen, size)
-        if size in SCREENS and screen in LEAST_SIZES:
-            selector, width, height = LEAST_SIZES[screen]
+        if size in SCREENS and screen in MIN_SIZES:
+            selector, width, height = MIN_SIZES[screen]
             box = page.locator(selector).bounding_box()
             assert box is not None and box["width"] >= width and box["height"] >= height, screen
         if screen == "drawing":

@@ -17,7 +17,7 @@ from tiniscript.link.authority import RobotKey
 from tiniscript.link.messages import HOLD_MS, KEY_BYTES, KEY_TEACHER, REMOTE
 from tiniscript.studio import page_line, worker
 from tiniscript.studio.page_line import ATTENDED_MS, PageKeys, PageRobot
-from tiniscript.studio.robot_link import MOST_WAITING, BadRequest
+from tiniscript.studio.robot_link import MAX_WAITING, BadRequest
 
 __all__ = ["page_data"]  # a fixture
 TABS_SCRIPT = Path(__file__).with_name("stored_keys_in_node.mjs")
@@ -296,7 +296,7 @@ def test_keys_neither_end_nor_displace_an_upload(page: Page) -> None:
     assert answers[99].get("ok")
     assert {*range(100, 160), *range(200, 240)} <= answers.keys(), "each has its answer"
     assert not any(answer.get("said") for answer in answers.values())
-    names = [{"do": "hello", "id": 300 + k} for k in range(MOST_WAITING)]
+    names = [{"do": "hello", "id": 300 + k} for k in range(MAX_WAITING)]
     keys = {"do": "keys", "id": 400, "keys": 0, "x": 0, "y": 0}
     page.advance(1, *names, keys)
     with pytest.raises(BadRequest):

@@ -260,11 +260,11 @@ def test_a_long_recording_ends_before_its_file_is_too_large() -> None:
     added = [rows.add(Row(ms, f"READ DISTANCE {ms % 400}.5")) for ms in range(100_000)]
     assert rows.is_full and added == sorted(added, reverse=True)
     data = encode(first_line(), rows.rows, rows.rows[-1].ms).encode()
-    assert len(data) < recordings.MOST_BYTES
+    assert len(data) < recordings.MAX_BYTES
     assert decode(data).rows == tuple(rows.rows)
     short_rows = Rows()
-    assert short_rows.add(Row(recordings.MOST_MS, "SHOW 1"))
-    assert not short_rows.add(Row(recordings.MOST_MS + 1, "SHOW 1"))
+    assert short_rows.add(Row(recordings.MAX_MS, "SHOW 1"))
+    assert not short_rows.add(Row(recordings.MAX_MS + 1, "SHOW 1"))
 
 
 @pytest.mark.parametrize("seed", range(5))

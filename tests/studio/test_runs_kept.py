@@ -9,7 +9,7 @@ from pathlib import Path
 from tests.support.node import in_node
 
 SCRIPT = Path(__file__).parent / "runs_kept_in_node.mjs"
-MOST_RUNS, MOST_CHARACTERS = 10, 2_000_000
+MAX_RUNS, MAX_CHARACTERS = 10, 2_000_000
 LARGE_RUN = (9_900, 188, 0, 0)  # nearly as much as there is room for
 TOO_LARGE_RUN = (9_900, 188, 50_000, 0)
 ROW_CHARACTERS = 12  # of a row, beside its text
@@ -38,8 +38,8 @@ def stories() -> list[list[Kept]]:
 
 def trimmed(runs: list[tuple[int, int]]) -> list[tuple[int, int]]:
     """Return the newest runs that there is room for, and the newest in any case."""
-    runs = runs[-MOST_RUNS:]
-    while len(runs) > 1 and sum(size for _, size in runs) > MOST_CHARACTERS:
+    runs = runs[-MAX_RUNS:]
+    while len(runs) > 1 and sum(size for _, size in runs) > MAX_CHARACTERS:
         runs = runs[1:]
     return runs
 
@@ -61,7 +61,7 @@ def test_the_newest_runs_are_kept_while_there_is_room() -> None:
             assert run_size == rows * (characters + ROW_CHARACTERS) + file + seen
             kept_before, kept_runs = kept_runs, trimmed([*kept_runs[:-1], (number, run_size)])
             by_size += len(kept_runs) < len(kept_before)
-            by_count += len(kept_runs) == MOST_RUNS < number
+            by_count += len(kept_runs) == MAX_RUNS < number
             assert at_end == [run_number for run_number, _ in reversed(kept_runs)]
             assert size == sum(run_size for _, run_size in kept_runs)
     assert by_count > 40 and by_size > 100 and by_nothing > 40

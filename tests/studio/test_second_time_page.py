@@ -106,7 +106,7 @@ def test_a_used_page_behaves_like_a_fresh_one(page_data: Path, part: str) -> Non
 
 # Of the whole page: what each row of seeds has to have done first, for it to be about something.
 NEEDED_ACTIONS = {"run", "stop", "step", "type", "build", "robot"}
-LEAST_ACTION_KINDS = 30  # of doing something
+MIN_ACTION_KINDS = 30  # of doing something
 ROW = 8  # seeds
 
 
@@ -120,6 +120,6 @@ def test_starting_anew_shows_the_same_as_a_reload(page_data: Path, first_seed: i
     rows: list[dict[str, Any]] = [json.loads(line) for line in lines]
     assert len(rows) == ROW
     end_kinds = {end for row in rows for end in row["ends"]}
-    assert end_kinds >= NEEDED_ACTIONS and len(end_kinds) > LEAST_ACTION_KINDS
+    assert end_kinds >= NEEDED_ACTIONS and len(end_kinds) > MIN_ACTION_KINDS
     for row in rows:
         assert row["isSame"] and not row["unhandled"], row

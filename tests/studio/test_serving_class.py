@@ -136,7 +136,7 @@ def test_many_connections_block_nobody(served_class: Class, is_same: bool) -> No
             assert pupil.getresponse().read()
             assert ask(host_header(served_class))[0].status == 200
         assert pupil.sock is kept_socket
-        assert active_count() - threads_before <= serving.MOST_CLASS_CONNECTIONS + 30
+        assert active_count() - threads_before <= serving.MAX_CLASS_CONNECTIONS + 30
     pupil.close()
 
 
@@ -146,7 +146,7 @@ def test_a_slow_stranger_does_not_disconnect_page_loads(served_class: Class) -> 
     early_client.connect()
     with crowd(
         served_class.server.server_port,
-        count=serving.MOST_CLASS_CONNECTIONS + 50,
+        count=serving.MAX_CLASS_CONNECTIONS + 50,
         host=HOST,
         source=OTHER_HOST,
     ):

@@ -166,13 +166,13 @@ def test_a_thousand_connections_block_nobody(server: serving.Server, server_host
             strangers.enter_context(client_crowd)
             assert ask() == 200
         assert page.sock is kept_socket
-        assert active_count() - active_count_before <= serving.MOST_CONNECTIONS + 30
+        assert active_count() - active_count_before <= serving.MAX_CONNECTIONS + 30
     page.close()
 
 
 def test_closed_pages_take_no_place(server: serving.Server, server_host: str) -> None:
     """However many there were: a new one fetches its files over several connections at once."""
-    for _ in range(serving.MOST_CONNECTIONS + 2):
+    for _ in range(serving.MAX_CONNECTIONS + 2):
         assert post(server_host, server.entrances.token, PORTS)[0] == 200
     with ExitStack() as browser:
         connections = [

@@ -27,7 +27,7 @@ PARTS = ("tiniscript", "senses", "robot", "bytecode", "plain", "line", "mistake"
          "formatted")  # fmt: skip
 LISTING_ROW = re.compile("[0-9a-f]{4}  ")
 TIMES = re.compile(r"([0-9a-f]{4})  (((?:[0-9a-f]{2} )+) .*), (\d+) times")
-LEAST_FOLDED_ROWS = 4  # rows alike, and more, are one
+MIN_FOLDED_ROWS = 4  # rows alike, and more, are one
 FIRST_LINE = re.compile(r"(?:line|línea) 1:  (.*\n)")
 TITLE_LINE = re.compile(r"(?m)^(\S.*)\n(?=(?:line|línea) \d+:  )")
 
@@ -110,7 +110,7 @@ def _fold(text: str) -> str:
         text.splitlines(), lambda row: row[4:] if LISTING_ROW.match(row) else row
     ):
         rows = list(group)
-        is_many = len(rows) >= LEAST_FOLDED_ROWS and LISTING_ROW.match(rows[0])
+        is_many = len(rows) >= MIN_FOLDED_ROWS and LISTING_ROW.match(rows[0])
         lines += [f"{rows[0]}, {len(rows)} times"] if is_many else rows
     return "".join(f"{row}\n" for row in lines)
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from tests.support import studio
 from tests.support.studio import Class, Pages
 from tests.support.waiting import until
-from tiniscript.studio.class_keeping import MOST_PUPILS
+from tiniscript.studio.class_keeping import MAX_PUPILS
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 def class_of_many() -> Iterator[Class]:
     """A class without a robot, with room for all at one address."""
     with studio.serve_class([]) as taught_class:
-        taught_class.room.teach({"do": "class_places", "places": MOST_PUPILS})
+        taught_class.room.teach({"do": "class_places", "places": MAX_PUPILS})
         yield taught_class
 
 

@@ -11,7 +11,7 @@ from tests.machines.esp32 import Esp32Robot
 from tests.machines.host_firmware import TICKS
 from tiniscript.link.session import Session
 
-LEAST_MTU = 23
+MIN_MTU = 23
 
 
 class Client(Protocol):
@@ -50,13 +50,13 @@ class End(Protocol):
 class LowEnergy:
     """A client of the Nordic UART service. It takes one notification in each `look_interval`."""
 
-    def __init__(self, robot: Esp32Robot, mtu: int = LEAST_MTU, look_interval: int = 1) -> None:
+    def __init__(self, robot: Esp32Robot, mtu: int = MIN_MTU, look_interval: int = 1) -> None:
         self.robot, self.mtu, self.look_interval = robot, mtu, look_interval
         self.lengths: list[int] = []
         self._notifications: list[bytes] = []
         self._look_count = 0
         self._number = robot.radio("c")
-        if mtu != LEAST_MTU:
+        if mtu != MIN_MTU:
             robot.radio("m", self._number + pack("<H", mtu))
         self.subscribe()
 

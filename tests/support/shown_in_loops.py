@@ -10,7 +10,7 @@ import random
 from math import inf
 
 SENSORS = ("DISTANCE", "LIGHT_L", "LIGHT_R")
-MOST_DEPTH = 2
+MAX_DEPTH = 2
 TimedAction = tuple[float, str]  # time and text of an action
 
 
@@ -34,7 +34,7 @@ def _statement(rng: random.Random, depth: int) -> str:
         f"F({time}, {power})", f"L({time}, {power})", f"M({power}, -{power})",
         f"X = {_value(rng)}", f"BEEP({time}, 440)", f"F({time}, {power}) UNTIL({_check(rng)})",
     )  # fmt: skip
-    if depth == MOST_DEPTH or rng.random() < 0.8:
+    if depth == MAX_DEPTH or rng.random() < 0.8:
         return rng.choice(simple)
     if rng.random() < 0.5:
         return f"IF({_check(rng)})\n{_body(rng, depth + 1)}\nENDIF"

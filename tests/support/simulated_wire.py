@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Protocol
 
 from tests.support.uart import at_speed
-from tiniscript.link.wire import MOST_BYTES, QUIET_MS, Wire
+from tiniscript.link.wire import MAX_BYTES, QUIET_MS, Wire
 
 
 class OtherEnd(Protocol):
@@ -47,7 +47,7 @@ class SimulatedWire(Wire):
         if self.is_gone:
             raise OSError("gone")
         received_bytes, wait_left_ms = b"", wait_ms
-        while wait_left_ms > 0 and len(received_bytes) < MOST_BYTES:
+        while wait_left_ms > 0 and len(received_bytes) < MAX_BYTES:
             data = self._step()
             received_bytes += data
             wait_left_ms = quiet_ms if data else wait_left_ms - 1

@@ -6,7 +6,7 @@ import re
 
 RUNNING_LINE = b"SI|F(60,80)\n"
 SILENCE_MS = 1000
-SHORTEST_STOP_MS, MOST_MS = 100, 1.0
+SHORTEST_STOP_MS, MAX_MS = 100, 1.0
 # Bytes before the line of the stop, after a running program and a second of silence.
 PREFIXES = {
     "nothing": b"",

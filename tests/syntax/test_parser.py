@@ -17,7 +17,7 @@ from tests.oracle.interpreter import PAPER_KIT
 from tests.oracle.programs import break_text, program
 from tiniscript.base.fixed_point import as_text
 from tiniscript.base.source import Source, Span
-from tiniscript.diagnostics.codes import MOST_DIAGNOSTICS
+from tiniscript.diagnostics.codes import MAX_DIAGNOSTICS
 from tiniscript.syntax import ast
 from tiniscript.syntax.outline import _Line
 from tiniscript.syntax.parser import _RULES, Parser, parse
@@ -268,7 +268,7 @@ def test_a_def_may_be_called_by_a_word_of_another_language() -> None:
 
 def test_parsing_ends_after_enough_diagnostics() -> None:
     parsed_text = parse(Source("*;" * 5000))
-    assert len(parsed_text.diagnostics) == MOST_DIAGNOSTICS + 1
+    assert len(parsed_text.diagnostics) == MAX_DIAGNOSTICS + 1
 
 
 # -- any text -------------------------------------------------------------------------------------

@@ -7,7 +7,7 @@ import pytest
 from tools.generate.packed_texts import (
     END_CODE,
     FIRST_LETTER,
-    MOST_NESTED_PAIRS,
+    MAX_NESTED_PAIRS,
     Pair,
     pack_texts,
     unpack_texts,
@@ -58,6 +58,6 @@ def test_nested_pairs_are_not_too_deep(language: str) -> None:
     def pair_of(code: int) -> Pair:
         return data.pairs[code - 1]
 
-    assert max(map(depth, range(1, 1 + len(data.pairs)))) <= MOST_NESTED_PAIRS
+    assert max(map(depth, range(1, 1 + len(data.pairs)))) <= MAX_NESTED_PAIRS
     assert END_CODE not in {code for pair in data.pairs for code in pair}
     assert len(data.pairs) < FIRST_LETTER

@@ -14,7 +14,7 @@ from tests.support.texts import LANGUAGES
 from tests.support.texts import catalogue_texts as all_said
 from tiniscript import robots
 from tiniscript.bytecode.disassembly import disassemble
-from tiniscript.codegen.text.problems import MOST_CHARACTERS, PROBLEMS
+from tiniscript.codegen.text.problems import MAX_CHARACTERS, PROBLEMS
 from tiniscript.robots.text_levels import LEVELS, TASK_AND_EXTENT_WORDS, UNREAD_WORDS
 from tiniscript.syntax.lexer import scan
 
@@ -290,7 +290,7 @@ def test_a_reader_without_defs_reads_everything_else() -> None:
 def test_texts_are_short_and_plain() -> None:
     for language in LANGUAGES:
         for text in all_said(language, "robot").values():
-            assert text.isascii() and 0 < len(text) <= MOST_CHARACTERS
+            assert text.isascii() and 0 < len(text) <= MAX_CHARACTERS
 
 
 # -- limits -------------------------------------------------------------------------------------

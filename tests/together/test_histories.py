@@ -21,7 +21,7 @@ from tests.together.world import World
 EDIT_COUNT = 120  # of a history
 EDITS_PER_COMPARISON = 40  # deeds between two looks at the whole program
 LESSON_S = 300.0
-MOST_REFUSED = 0.01
+MAX_REFUSED = 0.01
 
 
 def history(seed: int, deeds: int, pages: int) -> World:
@@ -113,7 +113,7 @@ def test_all_pages_end_with_the_same_program(seed: int) -> None:
 def test_pupils_typing_at_normal_speed_are_seldom_refused() -> None:
     change_count, refused_count = _counts([lesson(seed, 3) for seed in range(3)])
     assert change_count > 300
-    assert refused_count <= MOST_REFUSED * change_count, f"{refused_count} of {change_count}"
+    assert refused_count <= MAX_REFUSED * change_count, f"{refused_count} of {change_count}"
 
 
 def _counts(worlds: list[World]) -> tuple[int, int]:

@@ -22,7 +22,7 @@ from tiniscript.together.form import (
 from tiniscript.together.layout import parse_tree, text_of
 from tiniscript.together.ordering import SharedProgram
 from tiniscript.together.page import Page
-from tiniscript.together.tree import MOST_FORMER_PLACES
+from tiniscript.together.tree import MAX_FORMER_PLACES
 
 MESSAGE_COUNT = 1500
 TEXT = "SI|F(1, 80)\nLOOP(3)\nB(1, 40)\nEND_LOOP\nIF(X < 1)\nS\nELSE\nW(1)\nENDIF\n"
@@ -122,7 +122,7 @@ def test_deep_and_long_programs_are_refused() -> None:
 def test_the_number_of_remembered_deletions_is_limited() -> None:
     program = SharedProgram(parse_tree("S\n", lambda: "i.1"), "e")
     page = Page.of("z", program.news("z", -1, ""))
-    for k in range(1, 2 * MOST_FORMER_PLACES // 100 + 2):
+    for k in range(1, 2 * MAX_FORMER_PLACES // 100 + 2):
         nodes = [{"id": f"m.{k}{j:03}", "text": "W(1)"} for j in range(100)]
         ids = [node["id"] for node in nodes]
         changes = [
@@ -131,7 +131,7 @@ def test_the_number_of_remembered_deletions_is_limited() -> None:
         ]
         program.submit([change_of({"uid": f"m:{k}", "ops": changes})])
         page.receive(program.news("z", page.number, "e"))
-    assert len(program.tree.former_place_by_id) == MOST_FORMER_PLACES
+    assert len(program.tree.former_place_by_id) == MAX_FORMER_PLACES
     assert list(page.base.former_place_by_id.items()) == list(
         program.tree.former_place_by_id.items()
     )

@@ -106,7 +106,7 @@ def test_a_crash_on_a_bad_disk_loses_no_readable_data(
 ) -> None:
     path, rng, is_full, kept_number = tmp_path / "journal", Random(seed), False, 0
     journal, program = begin_journal(path)
-    monkeypatch.setattr(journals, "MOST_BYTES", 2000)
+    monkeypatch.setattr(journals, "MAX_BYTES", 2000)
 
     def check_kept_changes() -> None:
         reopened = Journal(path)
@@ -147,7 +147,7 @@ def test_a_program_goes_on_as_before_a_crash_whenever_its_journal_began_anew(
 ) -> None:
     """Each page hears the same of its changes, taken or refused."""
     rng, path = Random(seed), tmp_path / "journal"
-    monkeypatch.setattr(journals, "MOST_BYTES", 3000)
+    monkeypatch.setattr(journals, "MAX_BYTES", 3000)
     journal, program = begin_journal(path)
     for k in range(60):
         change_program(program, rng.choice((0, 1000 + k)), rng.choice("abc"))

@@ -20,9 +20,9 @@ from tiniscript.link.frames import Frame, decode_frame, encode_frame
 from tiniscript.link.messages import BY_NAME, MAJOR, MINOR, PAYLOAD_BYTES, RUN, encode_payload
 from tiniscript.link.session import Session
 from tiniscript.virtual import transports as limits
-from tiniscript.virtual.protocol_sniffer import MOST_LINE_BYTES, sniff_robot_client
+from tiniscript.virtual.protocol_sniffer import MAX_LINE_BYTES, sniff_robot_client
 from tiniscript.virtual.simulator import Simulator
-from tiniscript.virtual.transports import MOST_CALLERS
+from tiniscript.virtual.transports import MAX_CALLERS
 
 
 def verdicts(data: bytes) -> list[bool | None]:
@@ -94,8 +94,8 @@ def test_a_line_of_text_is_accepted_as_soon_as_it_is_recognizable(text: str, aft
 
 
 def test_a_first_line_has_an_end() -> None:
-    assert sniff_robot_client(b"A" * MOST_LINE_BYTES) is None
-    assert sniff_robot_client(b"A" * (MOST_LINE_BYTES + 1)) is False
+    assert sniff_robot_client(b"A" * MAX_LINE_BYTES) is None
+    assert sniff_robot_client(b"A" * (MAX_LINE_BYTES + 1)) is False
     assert sniff_robot_client(b"") is sniff_robot_client(b"\0") is None
 
 
@@ -195,7 +195,7 @@ def test_many_silent_clients_block_nobody(simulator: Simulator, says: bytes) -> 
         return is_said and b"\0" in receive(client, heard_bytes)
 
     until(simulator, ask_and_look)
-    assert MOST_CALLERS / 2 < max_callers <= MOST_CALLERS
+    assert MAX_CALLERS / 2 < max_callers <= MAX_CALLERS
     for connection in (client, *idle):
         connection.close()
 

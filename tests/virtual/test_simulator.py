@@ -10,7 +10,7 @@ from tests.support.simulator_visits import PING, receive, until, visit
 from tiniscript.virtual import transports as limits
 from tiniscript.virtual.simulator import (
     HEARTBEAT_MS,
-    MOST_WAITING_BYTES,
+    MAX_WAITING_BYTES,
     SILENCE_S,
     Heartbeat,
     Simulator,
@@ -30,13 +30,13 @@ def test_a_flood_waits_outside(simulator: Simulator) -> None:
             simulator.turn(0.01)
             max_waiting = max(max_waiting, simulator.waiting_bytes)
         assert sent_count > 100_000
-        assert MOST_WAITING_BYTES < max_waiting < MOST_WAITING_BYTES + limits.READ_BYTES + 100
+        assert MAX_WAITING_BYTES < max_waiting < MAX_WAITING_BYTES + limits.READ_BYTES + 100
 
 
 def test_a_client_that_does_not_read_loses_the_unread_data(
     simulator: Simulator, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(limits, "MOST_UNSENT_BYTES", 500)
+    monkeypatch.setattr(limits, "MAX_UNSENT_BYTES", 500)
     with visit(simulator) as client:
         client.sendall(PING)
         until(simulator, lambda: simulator.transports.is_connected)

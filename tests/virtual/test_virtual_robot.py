@@ -170,7 +170,7 @@ def test_a_program_that_another_one_replaces_stops_before_it_starts() -> None:
 
 
 def test_the_newest_unread_events_are_kept(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("tiniscript.virtual.robot.MOST_EVENTS", 10)
+    monkeypatch.setattr("tiniscript.virtual.robot.MAX_EVENTS", 10)
     robot = robot_in()
     Talk(robot).upload("SI|X = 0;LOOP(40);X = X + 1;SHOW(X);END_LOOP", is_detached=True)
     robot.step(robot.now_ms + 2000)

@@ -11,7 +11,7 @@ from tests.support.cpp_checks import WIDE_KIT, compare_runs, compare_verdicts
 from tests.support.edge_codes import kit_with_sensors, unverified_code
 from tests.support.images import image_for
 from tests.support.random_codes import jump, loop, simple
-from tiniscript.base.kit import MOST_DEVICES, Kit
+from tiniscript.base.kit import MAX_DEVICES, Kit
 from tiniscript.base.limits import CALLS, COUNTERS, DEFS, JOINS, STACK_VALUES, VARIABLES
 from tiniscript.bytecode.opcodes import SHORTS
 
@@ -98,16 +98,16 @@ def test_a_procedure_needs_what_it_calls_needs() -> None:
 
 def test_every_value_has_its_own_place() -> None:
     """Every variable, reading, counter, value and call has a place of its own."""
-    kit = kit_with_sensors(MOST_DEVICES)
+    kit = kit_with_sensors(MAX_DEVICES)
     readings = {device.name: [1000 * k + 500] for k, device in enumerate(kit.sensors)}
     senses = Senses(readings, max_ms=1000, max_steps=5000)
     code = b""
     for k in range(VARIABLES):
         code += simple("SET_VAR8") + bytes([k, 100 - k])
-    for k in range(MOST_DEVICES):
+    for k in range(MAX_DEVICES):
         code += simple("READ") + bytes([k])
     inner = b""
-    for name, count in (("PUSH_VAR", VARIABLES), ("PUSH_SENSOR", MOST_DEVICES)):
+    for name, count in (("PUSH_VAR", VARIABLES), ("PUSH_SENSOR", MAX_DEVICES)):
         inner += b"".join(simple(name) + bytes([k]) + simple("SHOW") for k in range(count))
     values = b"".join(simple("PUSH8") + bytes([3 * k]) for k in range(STACK_VALUES))
     inner += values + simple("SUB") * (STACK_VALUES - 1) + simple("SHOW")
@@ -117,7 +117,7 @@ def test_every_value_has_its_own_place() -> None:
     code += procedures + jump("CALL", True, last + 3)
     for k in range(VARIABLES):
         code += simple("PUSH_VAR") + bytes([k]) + simple("SHOW")
-    compare_verdicts(host(), [code], MOST_DEVICES, 0)
+    compare_verdicts(host(), [code], MAX_DEVICES, 0)
     ending = compare_runs(host(), code, kit, senses)
     assert ending == "DONE", ending
     # joins in addition to a procedure
@@ -164,9 +164,9 @@ def test_a_program_may_run_for_24_days() -> None:
 def test_code_changed_after_verification_ends_in_bad_code() -> None:
     """Code that changed after it was verified ends in BAD_CODE, and not too early."""
     # A robot may report more sensors than a machine remembers.
-    for device_count in (3, MOST_DEVICES - 1, MOST_DEVICES, MOST_DEVICES + 1, 2 * MOST_DEVICES):
+    for device_count in (3, MAX_DEVICES - 1, MAX_DEVICES, MAX_DEVICES + 1, 2 * MAX_DEVICES):
         kit = kit_with_sensors(device_count)
-        for code, caught_at in unverified_code(min(len(kit.readings), MOST_DEVICES)):
+        for code, caught_at in unverified_code(min(len(kit.readings), MAX_DEVICES)):
             run = host().run_unverified(code, kit, Senses(max_ms=100, max_steps=100))
             ending = run.trace.splitlines()[-1].split()[-1]
             expected_text = "DONE" if caught_at is None else "BAD_CODE"

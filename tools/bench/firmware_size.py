@@ -102,7 +102,7 @@ def main() -> int:
         free_text = "-"
         if not uno.missing():
             stack = firmware_stack.measure(sketch.firmware, robots.load(sketch.robot), sketch.board)
-            has_room &= stack.least_free >= firmware_stack.LEAST_FREE
+            has_room &= stack.least_free >= firmware_stack.MIN_FREE
             free_text = f"{stack.least_free:,}"
         sizes = [f"{size:,}" for size in (sketch.flash, sketch.capacity, sketch.ram)]
         size_rows.append([row_of(sketch.robot, sketch.board), *sizes, free_text])

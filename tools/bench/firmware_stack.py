@@ -24,12 +24,12 @@ from tiniscript.robots.profile import Robot
 from tiniscript.robots.text_levels import NO_TEXT, level_of
 from tools.uno import CYCLES_PER_MS, HERTZ, Stack, Uno
 
-LEAST_FREE = 150  # bytes
+MIN_FREE = 150  # bytes
 HEAP_START_SYMBOL = "_end"  # the symbol after all variables
 RAM_START = 0x800000  # first address of RAM in avr-nm
 BOARDS = {"uno": "uno", "nano": "uno", "mega": "mega"}  # the simulated one for each
 CALLS_AT_ONCE = 8  # most calls in parallel
-MOST_STEPS = 40
+MAX_STEPS = 40
 # Typed lines, and the robot's output: 16 waiting values, brackets, blocks, long answers.
 TYPED_LINES = (
     "HELP\n",
@@ -151,7 +151,7 @@ def fill_stack_by_stepping(wired_uno: Wired) -> None:
     session = wired_uno.session
     require_ok(wired_uno, session.break_at([0]))
     require_ok(wired_uno, session.start())
-    for _ in range(MOST_STEPS):
+    for _ in range(MAX_STEPS):
         wired_uno.run(60)
         require_ok(wired_uno, session.read_variables())
         require_ok(wired_uno, session.read_tasks())

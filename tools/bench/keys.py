@@ -34,9 +34,9 @@ RECONNECT_MS = 400  # time from a loss until words arrive
 LOST_MS = HOLD_MS + 50  # loss that keeps the connection attached
 # The slowest times by baud for a program that checks at once. A release may come just after a
 # repeated state, and wait for its answer or for GAP_MS.
-MOST_HELD_MS = {9600: 25.0, 115_200: 4.0}
-MOST_LET_GO_MS = {9600: 25.0 + GAP_MS, 115_200: 8.0}
-MOST_LOST_MS = HOLD_MS + 3  # the clock and the program look after that time
+MAX_HELD_MS = {9600: 25.0, 115_200: 4.0}
+MAX_LET_GO_MS = {9600: 25.0 + GAP_MS, 115_200: 8.0}
+MAX_LOST_MS = HOLD_MS + 3  # the clock and the program look after that time
 ROWS = (
     "stick held, until the motor pins change",
     "stick released, until the motor pins change",
@@ -152,9 +152,9 @@ def is_within_limits(
 ) -> bool:
     """Return whether the slowest are as they must be."""
     return (
-        max(held_ms) <= MOST_HELD_MS[baud]
-        and max(let_go_ms) <= MOST_LET_GO_MS[baud]
-        and max(lost_ms) <= MOST_LOST_MS
+        max(held_ms) <= MAX_HELD_MS[baud]
+        and max(let_go_ms) <= MAX_LET_GO_MS[baud]
+        and max(lost_ms) <= MAX_LOST_MS
     )
 
 

@@ -21,7 +21,7 @@ from tiniscript.link.session import Session
 
 BAUD = 115_200
 ROUND_TRIP_MS = 40
-MOST_TIMES = 3.0  # times the wire's time
+MAX_TIMES = 3.0  # times the wire's time
 LONGEST_UPLOAD_MS = 60_000
 MOVE = BY_NAME["MOVE8_F"].code
 
@@ -119,9 +119,9 @@ def main() -> int:
             f"| {upload_times.duration_ms} ms | {upload_times.times_of_wire:.2f} |"
         )
         is_quick_enough = (
-            code_bytes < profile.board.program_bytes or upload_times.times_of_wire <= MOST_TIMES
+            code_bytes < profile.board.program_bytes or upload_times.times_of_wire <= MAX_TIMES
         )
-    print(f"\nThe last one must take {MOST_TIMES:.0f} times the wire's time at most.")
+    print(f"\nThe last one must take {MAX_TIMES:.0f} times the wire's time at most.")
     return 0 if is_quick_enough else 1
 
 

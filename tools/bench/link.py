@@ -31,11 +31,11 @@ KIT = robots.load(ROBOT).kit
 SHORT_PROGRAM = PROGRAMS[0]
 
 # At most: ms from the first start bit to the pins, by baud; us.
-MOST_START_MS = {9600: 25.0, 115_200: 4.0}
-MOST_LIVE_US = 100
-MOST_STOP_US = 12
+MAX_START_MS = {9600: 25.0, 115_200: 4.0}
+MAX_LIVE_US = 100
+MAX_STOP_US = 12
 # Limit for an ATmega328P; a Mega's timers and ports need longer instructions.
-MOST_TOGETHER_US = 12.0
+MAX_TOGETHER_US = 12.0
 ROWS = (
     f"from the first start bit of `{SHORT_PROGRAM}` to the motor pins",
     "from the last byte of the same line, if `tsc live` sends it, to the motor pins",
@@ -166,10 +166,10 @@ def print_figures(figures_by_baud: dict[int, Figures], folder: Path) -> bool:
         (row, f"{stop_of_sketch[name].us:.1f} µs", f"{stop_of_sketch[name].together_us:.1f} µs")
         for name, row in OTHER_BOARDS.items()
     ], position=1)  # fmt: skip
-    late_sketches = [name for name, stop in stop_of_sketch.items() if stop.us > MOST_STOP_US]
+    late_sketches = [name for name, stop in stop_of_sketch.items() if stop.us > MAX_STOP_US]
     if late_sketches:
         print(
-            f"stops later than after {MOST_STOP_US} µs: {', '.join(late_sketches)}", file=sys.stderr
+            f"stops later than after {MAX_STOP_US} µs: {', '.join(late_sketches)}", file=sys.stderr
         )
     return not late_sketches and all(
         is_within_limits(baud, baud_figures) for baud, baud_figures in figures_by_baud.items()
@@ -189,11 +189,9 @@ def measure_other_stops(folder: Path) -> dict[str, stops.StopTimes]:
 
 def is_within_limits(baud: int, figures: Figures) -> bool:
     """Return whether the figures are as they must be."""
-    is_quick = figures.start_ms <= MOST_START_MS[baud] and figures.live_us <= MOST_LIVE_US
+    is_quick = figures.start_ms <= MAX_START_MS[baud] and figures.live_us <= MAX_LIVE_US
     return (
-        is_quick
-        and figures.stop.us <= MOST_STOP_US
-        and figures.stop.together_us <= MOST_TOGETHER_US
+        is_quick and figures.stop.us <= MAX_STOP_US and figures.stop.together_us <= MAX_TOGETHER_US
     )
 
 

@@ -65,7 +65,7 @@ WORKLOADS = (
     ),
 )
 
-MOST_CYCLES = (120.0, 200.0, 2400.0)  # cycles of one iteration, at most
+MAX_CYCLES = (120.0, 200.0, 2400.0)  # cycles of one iteration, at most
 
 
 @lru_cache

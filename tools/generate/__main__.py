@@ -14,7 +14,7 @@ from pathlib import Path
 
 from tiniscript import robots
 from tiniscript.base import limits
-from tiniscript.base.kit import MOST_DEVICES, Kit
+from tiniscript.base.kit import MAX_DEVICES, Kit
 from tiniscript.bytecode import image, opcodes, verify
 from tiniscript.robots import firmware
 from tiniscript.robots.profile import ProfileRefused, Robot
@@ -172,7 +172,7 @@ def limit_table() -> str:
         ("variables", limits.VARIABLES, "", f"{by_compiler}, and {by_operand}"),
         (
             "sensors of a kit, and actuators",
-            MOST_DEVICES,
+            MAX_DEVICES,
             "",
             f"the robot's profile, and {by_operand}",
         ),

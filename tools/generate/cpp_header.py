@@ -12,7 +12,7 @@ from types import ModuleType
 from typing import NamedTuple
 
 from tiniscript.base import limits
-from tiniscript.base.kit import DEVICES_POLYNOMIAL, MOST_DEVICES
+from tiniscript.base.kit import DEVICES_POLYNOMIAL, MAX_DEVICES
 from tiniscript.bytecode import image, opcodes, verify
 
 TASK_OPS = tuple(op for op in opcodes.OPS if op.needs == opcodes.NEEDS_TASKS)
@@ -49,7 +49,7 @@ def header(command: str) -> str:
         + constants_of(limits, "CODE_BYTES", "STACK_VALUES", "VARIABLES", "COUNTERS", "CALLS",
                        "DEFS", "TASKS", "NEST_WORDS", "JOINS")
         + constants(
-            ("kDevices", MOST_DEVICES),
+            ("kDevices", MAX_DEVICES),
             ("kCheckMs", limits.CHECK_MS),
             ("kShorts", opcodes.SHORTS),
             ("kPowerHigh", opcodes.OPERAND_KINDS["power"].high),

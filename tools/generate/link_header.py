@@ -36,13 +36,13 @@ def header(command: str) -> str:
         )
         + constants_of(
             messages, "SMALL_FRAME", "LARGE_FRAME", "LARGE_WINDOW", "HEAD_BYTES",
-            "CRC_BYTES", "REPLY", "SEALED", "NAME_BYTES", "MOST_BALANCE", "MOST_LEAST",
+            "CRC_BYTES", "REPLY", "SEALED", "NAME_BYTES", "MAX_BALANCE", "MAX_LEAST",
             "STOP_ZEROS", "SILENCE_MS", "ZERO_MS", "TEXT_MS", "HELD_MS", "DEAD_MAN_MS", "LISTEN_MS",
             "AGAIN_MS", "KEY_BYTES", "CHALLENGE_BYTES", "TAG_BYTES", "AUTHORITY_MS",
             "LONG_MS", "CLAIM_MS", "FORGET_MS", "NETWORK_BYTES",
-            "WIFI_TEXT_BYTES", "PASSWORD_BYTES", "LEAST_PASSWORD", "CLASS_BYTES",
-            "BROKER_PLACE_BYTES", "BROKER_NAME_BYTES", "TRUST_BYTES", "MOST_PAD", "HOLD_MS",
-            "MOST_BREAKPOINTS", "AFTER_GAP",
+            "WIFI_TEXT_BYTES", "PASSWORD_BYTES", "MIN_PASSWORD", "CLASS_BYTES",
+            "BROKER_PLACE_BYTES", "BROKER_NAME_BYTES", "TRUST_BYTES", "MAX_PAD", "HOLD_MS",
+            "MAX_BREAKPOINTS", "AFTER_GAP",
         ),
         "// How a program starts, in one byte.\n"
         + constants(*((f"k{camel(name)}", bits) for bits, name, _ in messages.MODES)),

@@ -22,7 +22,7 @@ from tiniscript.link.messages import MAJOR, MINOR
 from tiniscript.vm.machine import Machine
 from tiniscript.vm.state import DONE, FAULT, WAITING
 from tools.generate.machine_kit import (
-    MOST_STEPS,
+    MAX_STEPS,
     TINIBOT_KIT,
     USUAL_SCHEDULE,
     Run,
@@ -31,8 +31,8 @@ from tools.generate.machine_kit import (
 )
 
 LONGEST_RUN_MS = 3000
-MOST_SHOWS = 40
-MOST_BYTES = 200  # bytes of code that fit in any robot
+MAX_SHOWS = 40
+MAX_BYTES = 200  # bytes of code that fit in any robot
 UNPREDICTABLE_WORDS = ("TIME", "RANDOM")  # words with unpredictable values
 KEY_OF_KIND = {">": "computer", "<": "robot", "did": "does", "tells": "tells", "outcome": "outcome"}
 BYTES_ROW = re.compile(r"((?:[0-9a-f]{2} ?)+)(?:   (.*))?$")
@@ -69,13 +69,13 @@ def programs(runs: list[Run]) -> Iterator[dict[str, object]]:
         words = disassemble(code).split()
         if (
             image.devices
-            or len(code) > MOST_BYTES
+            or len(code) > MAX_BYTES
             or any(word in words for word in UNPREDICTABLE_WORDS)
         ):
             continue
         robot = TracedRobot(run.kit, int)
         machine = Machine(code, robot, len(run.kit.readings))
-        while (status := machine.tick(robot.now_ms, MOST_STEPS)) == WAITING:
+        while (status := machine.tick(robot.now_ms, MAX_STEPS)) == WAITING:
             robot.now_ms = machine.wake_ms
             if robot.now_ms > LONGEST_RUN_MS:
                 break
@@ -86,7 +86,7 @@ def programs(runs: list[Run]) -> Iterator[dict[str, object]]:
         ]
         is_still = all(not any(e.values) for e in robot.events if e.kind == "MOTORS")
         other_events = {event.kind for event in robot.events} - {"SHOW", "MOTORS"}
-        if status not in (DONE, FAULT) or other_events or not is_still or len(shows) > MOST_SHOWS:
+        if status not in (DONE, FAULT) or other_events or not is_still or len(shows) > MAX_SHOWS:
             continue
         numbers = {name: number for number, name, _ in FAULTS}
         fault = numbers[machine.fault] if machine.fault else 0
@@ -109,7 +109,7 @@ def refusals(runs: list[Run]) -> Iterator[dict[str, object]]:
             verdict_of(code, 255),
             verdict_of(code, len(TINIBOT_KIT.readings)),
         }
-        if len(verdicts) > 1 or "" in verdicts or len(code) > MOST_BYTES:
+        if len(verdicts) > 1 or "" in verdicts or len(code) > MAX_BYTES:
             continue
         rule, offset = verdicts.pop().split()
         yield {"name": run.name, "code": code.hex(), "rule": rule, "at": int(offset)}

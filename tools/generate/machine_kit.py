@@ -26,7 +26,7 @@ from tests.support.images import image_for
 from tests.support.kits import KITS
 from tests.support.random_programs import random_program
 from tiniscript import compile_text, robots
-from tiniscript.base.kit import MOST_DEVICES, NUMBER, YES_NO, Device, Kit
+from tiniscript.base.kit import MAX_DEVICES, NUMBER, YES_NO, Device, Kit
 from tiniscript.base.trace import TracedRobot
 from tiniscript.bytecode.disassembly import assemble
 from tiniscript.bytecode.image import GO, TASKS, Image, ImageRefused, pack, unpack, with_checksum
@@ -38,10 +38,10 @@ from tiniscript.vm.state import DONE, FAULT, RUNNING, Robot
 from tiniscript.vm.tasks import machine_of
 
 TINIBOT_KIT = robots.load("tinibot").kit
-MOST_STEPS = (
+MAX_STEPS = (
     100_000  # a case that runs more without a wait says nothing about its end: it is left out,
 )
-MOST_CALLS = 1000  # most calls of a run, also at one time
+MAX_CALLS = 1000  # most calls of a run, also at one time
 RANDOM_PROGRAMS = range(1000, 1030)
 TASK_PROGRAMS = range(1000, 1020)
 TASK_RUN_MS = 600
@@ -198,9 +198,9 @@ def answer_of(
     robot = SlowRobot(run)
     machine = machine_of(code, robot, len(run.kit.readings), run.senses.seed, start_ms)
     call_count = 0  # calls at the same time
-    while call_count < MOST_CALLS:
+    while call_count < MAX_CALLS:
         robot.was_slow = False
-        status = machine.tick(start_ms + robot.now_ms, MOST_STEPS)
+        status = machine.tick(start_ms + robot.now_ms, MAX_STEPS)
         if status == DONE:
             robot.record("DONE", (), "DONE")
         elif status == FAULT:
@@ -326,12 +326,12 @@ def device_runs() -> Iterator[Run]:
     """Return a run with as many devices as a kit may have, by each way to name one."""
     kinds = ((NUMBER, "cm", -1000, 400_000), (YES_NO, "", 0, 1))
     kit = Kit(
-        tuple(Device(f"S{k}", *kinds[k % 3 == 1]) for k in range(MOST_DEVICES)),
-        tuple(Device(f"A{k}", *kinds[k % 3 == 2]) for k in range(MOST_DEVICES)),
+        tuple(Device(f"S{k}", *kinds[k % 3 == 1]) for k in range(MAX_DEVICES)),
+        tuple(Device(f"A{k}", *kinds[k % 3 == 2]) for k in range(MAX_DEVICES)),
     )
     code = b""
     for sensor, actuator in chain(
-        ((f" s{k}", f" a{MOST_DEVICES - 1 - k}") for k in range(MOST_DEVICES)),
+        ((f" s{k}", f" a{MAX_DEVICES - 1 - k}") for k in range(MAX_DEVICES)),
         ((f"_{k}", f"_{k}") for k in range(SHORTS)),
     ):
         for name in (f"READ{sensor}", f"PUSH_SENSOR{sensor}", f"SET{actuator}"):

@@ -16,8 +16,8 @@ END_CODE = 0  # code that ends a text; pairs are numbered from 1
 FIRST_LETTER = 0x20  # the letters of ASCII begin here, and the codes of pairs end
 FIRST_COMMON = 8  # a half of a byte from here on is a code of its own
 COMMON_COUNT = 16 - FIRST_COMMON
-MOST_NESTED_PAIRS = 3  # pairs in pairs: the robot's stack holds a call for each
-LEAST_SAVED = 4  # half bytes, of which a pair itself takes 4
+MAX_NESTED_PAIRS = 3  # pairs in pairs: the robot's stack holds a call for each
+MIN_SAVED = 4  # half bytes, of which a pair itself takes 4
 ROUND_COUNT = 8  # rounds of choosing codes and pairs, which depend on each other
 
 Pair = tuple[int, int]
@@ -101,10 +101,10 @@ def _pair_codes(
         possible_pairs = [
             (count * (halves(pair[0]) + halves(pair[1]) - 2), pair)
             for pair, count in uses.items()
-            if max(depths.get(part, 0) for part in pair) < MOST_NESTED_PAIRS
+            if max(depths.get(part, 0) for part in pair) < MAX_NESTED_PAIRS
         ]
         saved_halves, pair = max(possible_pairs, default=(0, (END_CODE, END_CODE)))
-        if saved_halves <= LEAST_SAVED:
+        if saved_halves <= MIN_SAVED:
             break
         code = 1 + len(pairs)
         depths[code] = 1 + max(depths.get(part, 0) for part in pair)

@@ -19,9 +19,9 @@ from tools.generate.paper import BOLD_FONT, MONO_FONT, SANS_FONT, Box, Line, Pag
 
 LEFT_X, RIGHT_X = 36.0, 559.0
 CODE_X, SENTENCE_X = 44.0, 252.0
-HEAD_PT, ROW_PT, LEAST_ROW_PT = 20.5, 15.4, 12.0
+HEAD_PT, ROW_PT, MIN_ROW_PT = 20.5, 15.4, 12.0
 CODE_SIZE, SENTENCE_SIZE = 9.8, 10.0
-MOST_CODE_SIGNS, MOST_SENTENCE_SIGNS = 34, 60  # most characters that fit
+MAX_CODE_SIGNS, MAX_SENTENCE_SIGNS = 34, 60  # most characters that fit
 BLACK, GREY, WHITE = (20, 20, 20), (90, 90, 90), (255, 255, 255)
 BLUE, PALE_BLUE = (18, 92, 160), (238, 243, 248)
 # A heading, and the words below it: `{F}` is the example that the table has for F.
@@ -150,14 +150,14 @@ def page(language: str) -> Page:
     )
     room = paper.HEIGHT - 26 - y - (HEAD_PT + 2) * len(groups)
     row_pt = min(ROW_PT, room / sum(len(rows) for _, rows in groups))
-    assert row_pt >= LEAST_ROW_PT, f"the page has room for {room / LEAST_ROW_PT:.0f} rows"
+    assert row_pt >= MIN_ROW_PT, f"the page has room for {room / MIN_ROW_PT:.0f} rows"
     for heading, rows in groups:
         page.append(Line(LEFT_X, y + 15, 12, BOLD_FONT, BLUE, _poster_text(heading, language)))
         y += HEAD_PT
         for number, (code, sentence) in enumerate(rows):
             key = f"block/{code.partition('(')[0]} in languages/{language}/studio.toml"
-            assert len(code) <= MOST_CODE_SIGNS, f"too long for the poster: {code}"
-            assert len(sentence) <= MOST_SENTENCE_SIGNS, (
+            assert len(code) <= MAX_CODE_SIGNS, f"too long for the poster: {code}"
+            assert len(sentence) <= MAX_SENTENCE_SIGNS, (
                 f"too long for the poster: {code} {sentence}; {key} is shorter"
             )
             assert sentence, f"the poster has nothing to say of {code}: {key}"

@@ -13,7 +13,7 @@ from tools.generate.packed_texts import (
     END_CODE,
     FIRST_COMMON,
     FIRST_LETTER,
-    MOST_NESTED_PAIRS,
+    MAX_NESTED_PAIRS,
     letters_of,
     pack_texts,
 )
@@ -62,7 +62,7 @@ def texts_header(command: str) -> str:
             f"constexpr uint8_t kFirstCommon = {FIRST_COMMON};",
             "",
             "// In flash: all texts, the codes of halves, and the two codes of each pair, which",
-            f"// may be pairs again, {MOST_NESTED_PAIRS} deep.",
+            f"// may be pairs again, {MAX_NESTED_PAIRS} deep.",
             "const uint8_t* packed_texts();",
             "const uint8_t* packed_codes();",
             "const uint8_t* pair_of(uint8_t code);",

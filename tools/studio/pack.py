@@ -127,15 +127,15 @@ class Packer:
 
 
 NO_LINES = 0xF8  # marker of instructions without a line; their number less 1 is added
-MOST_ENTRY_UNITS = 8  # the most of one entry
+MAX_ENTRY_UNITS = 8  # the most of one entry
 
 
 def _without_places(code: CodeType) -> CodeType:
     """Return code without the lines of its source, which are a fifth of it and compress badly, and
     without the qualified names of functions."""
-    entries, rest_units = divmod(len(code.co_code) // 2, MOST_ENTRY_UNITS)
+    entries, rest_units = divmod(len(code.co_code) // 2, MAX_ENTRY_UNITS)
     lines = bytes(
-        [NO_LINES + MOST_ENTRY_UNITS - 1] * entries + [NO_LINES + rest_units - 1] * (rest_units > 0)
+        [NO_LINES + MAX_ENTRY_UNITS - 1] * entries + [NO_LINES + rest_units - 1] * (rest_units > 0)
     )
     constants = tuple(_without_places(constant) if isinstance(constant, CodeType) else constant
                       for constant in code.co_consts)  # fmt: skip

@@ -8,7 +8,7 @@
 #include "uno.h"
 
 enum {
-  kMostBytes = 4096,
+  kMaxBytes = 4096,
   kEecr = 0x3f,
   kEedr = 0x40,
   kEearl = 0x41,
@@ -25,7 +25,7 @@ enum {
   kWholeCycles = kHertz / 10000 * 34,  // 3.4 ms
 };
 
-static uint8_t bytes[kMostBytes];
+static uint8_t bytes[kMaxBytes];
 static int file = -1;
 static uint8_t control;
 static Cycle may_write_until;

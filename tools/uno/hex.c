@@ -9,7 +9,7 @@
 
 enum {
   kLine = 600,
-  kMostBytes = 255,
+  kMaxBytes = 255,
   kData = 0,
   kEnd = 1,
   kSegment = 2,
@@ -21,11 +21,11 @@ struct Record {
   uint8_t count;
   uint16_t address;
   uint8_t type;
-  uint8_t bytes[kMostBytes];
+  uint8_t bytes[kMaxBytes];
 };
 
 static bool read_record(const char* line, struct Record* record) {
-  uint8_t raw[kMostBytes + 5];
+  uint8_t raw[kMaxBytes + 5];
   size_t length = 0;
   uint8_t sum = 0;
   if (*line++ != ':') return false;

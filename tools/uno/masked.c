@@ -3,14 +3,14 @@
 
 #include "uno.h"
 
-enum { kMostPlaces = 256, kMostNested = 16 };
+enum { kMaxPlaces = 256, kMaxNested = 16 };
 
 static struct Place {
   uint8_t vector;  // of the interrupt that is at work; 0: the program
   bool is_entry;
   uint32_t pc;  // of the first instruction
   Cycle cycles;
-} places[kMostPlaces];
+} places[kMaxPlaces];
 static int place_count;
 
 static bool is_watched;
@@ -21,7 +21,7 @@ static Cycle masked_from;
 static uint32_t masked_at;
 static uint8_t masked_in;
 static Cycle looked_at;
-static uint8_t vectors[kMostNested];  // of the interrupts that are at work
+static uint8_t vectors[kMaxNested];  // of the interrupts that are at work
 static int depth;
 
 static uint8_t vector_now(void) { return depth > 0 ? vectors[depth - 1] : 0; }
@@ -40,7 +40,7 @@ static void end(void) {
   const Cycle cycles = avr->cycle - masked_from;
   int k = 0;
   while (k < place_count && (places[k].vector != masked_in || places[k].pc != masked_at)) k++;
-  if (k == kMostPlaces) give_up("interrupts are turned off in too many places");
+  if (k == kMaxPlaces) give_up("interrupts are turned off in too many places");
   if (k == place_count) places[place_count++] = (struct Place){masked_in, is_entry, masked_at, 0};
   if (cycles > places[k].cycles) places[k].cycles = cycles;
 }
@@ -61,7 +61,7 @@ static void entered(struct avr_irq_t* irq, uint32_t value, void* param) {
     if (depth > 0) depth--;
     return;
   }
-  if (depth == kMostNested) give_up("interrupts are too deep");
+  if (depth == kMaxNested) give_up("interrupts are too deep");
   vectors[depth++] = vector->vector;
   begin(true, vector->vector);
 }

@@ -16,8 +16,8 @@ enum {
   kBandGapMilliVolts = 1100,
   kBandGapCycles = kHertz / 1000,  // for so long it is not what it should be
   kAdmux = 0x7c,
-  kMostCount = 1023,
-  kMostAnalog = 16,
+  kMaxCount = 1023,
+  kMaxAnalog = 16,
   kName = 4,
 };
 
@@ -145,9 +145,9 @@ static struct Pin {
   struct Wave wave;
   bool level;
   enum Drive drive;
-} pins[kMostPins];
+} pins[kMaxPins];
 static int pin_count;
-static int analog[kMostAnalog];
+static int analog[kMaxAnalog];
 static int supply_mv = kUsualMilliVolts;
 static avr_adc_mux_t* band_gap;
 static int mux;  // where ADMUX was
@@ -258,10 +258,10 @@ void pin_wire(bool level) {
 }
 
 void analog_set(int channel, int count) {
-  if (channel < 0 || channel >= board->analog_pins || count < 0 || count > kMostCount) return;
+  if (channel < 0 || channel >= board->analog_pins || count < 0 || count > kMaxCount) return;
   analog[channel] = count;
   avr_irq_t* irq = avr_io_getirq(avr, AVR_IOCTL_ADC_GETIRQ, ADC_IRQ_ADC0 + channel);
-  const int rounded_up = (count * supply_mv + kMostCount - 1) / kMostCount;
+  const int rounded_up = (count * supply_mv + kMaxCount - 1) / kMaxCount;
   avr_raise_irq(irq, (uint32_t)rounded_up);  // the chip rounds down
 }
 

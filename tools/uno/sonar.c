@@ -4,7 +4,7 @@
 #include "uno.h"
 
 enum {
-  kMost = 4,
+  kMaxSonars = 4,
   kMicrosecond = kHertz / 1000000,
   kTriggerCycles = 10 * kMicrosecond,
   kBeginCycles = 450 * kMicrosecond,      // eight periods of 40 kHz, and what the module needs
@@ -19,7 +19,7 @@ static struct Sonar {
   int distance_mm;
   bool is_busy;
   Cycle rose;
-} sonars[kMost];
+} sonars[kMaxSonars];
 static int count;
 
 static void falls(Cycle when, void* what) {
@@ -42,7 +42,7 @@ static void rises(Cycle when, void* what) {
 bool sonar_set(int trigger, int echo, int distance_mm) {
   struct Sonar* sonar = sonars;
   while (sonar < sonars + count && (sonar->trigger != trigger || sonar->echo != echo)) sonar++;
-  if (sonar == sonars + kMost) return false;
+  if (sonar == sonars + kMaxSonars) return false;
   if (sonar == sonars + count) {
     count++;
     *sonar = (struct Sonar){trigger, echo, distance_mm, false, 0};

@@ -7,7 +7,7 @@
 
 #include "uno.h"
 
-enum { kSpl = 0x5d, kSph = 0x5e, kMostPushed = 3, kSteadyLooks = 3, kMemory = 1 << 16 };
+enum { kSpl = 0x5d, kSph = 0x5e, kMaxPushed = 3, kSteadyLooks = 3, kMemory = 1 << 16 };
 
 static uint8_t paint[kMemory];
 static bool is_watched;
@@ -35,7 +35,7 @@ void stack_look(void) {
   const int at = stack_at();
   looks = at == looked_at ? looks + 1 : 1;
   looked_at = at;
-  if (looks < kSteadyLooks && abs(at - steady_at) > kMostPushed) return;
+  if (looks < kSteadyLooks && abs(at - steady_at) > kMaxPushed) return;
   steady_at = at;
   note_depth(at);
 }

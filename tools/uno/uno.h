@@ -9,7 +9,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-enum { kHertz = 16000000, kMostPins = 70, kNoPin = -1 };
+enum { kHertz = 16000000, kMaxPins = 70, kNoPin = -1 };
 
 typedef uint64_t Cycle;
 

@@ -23,7 +23,7 @@ from pathlib import Path
 from time import monotonic, sleep, time
 
 NEW_ENDING = ".new"  # the end of the name of a file that is not yet whole
-MOST_LINKS = 40  # most symbolic links to follow to a file
+MAX_LINKS = 40  # most symbolic links to follow to a file
 NAME_CHARACTERS = 100  # characters of a file's name that its temporary file keeps
 LOCK_ENDING = (
     ".lock"  # the end of the name of a file that commands lock while they change another one
@@ -154,7 +154,7 @@ def _check_links(path: Path) -> None:
         if is_shared and link_stat.st_uid not in (os.geteuid(), folder_stat.st_uid, 0):
             raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
         link_count += 1
-        if link_count > MOST_LINKS:
+        if link_count > MAX_LINKS:
             return  # anyone who opens the file reports the error
         target = next_path.readlink()
         reached_path = Path(target.anchor) if target.anchor else reached_path

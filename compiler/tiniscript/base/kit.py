@@ -15,7 +15,7 @@ from tiniscript.base.words import ROLES, Argument, Word
 NUMBER = "number"
 YES_NO = "yes/no"
 
-MOST_DEVICES = 32  # the most sensors of a kit, and the most actuators
+MAX_DEVICES = 32  # the most sensors of a kit, and the most actuators
 DEVICES_POLYNOMIAL = 0x2D  # x^16 + x^5 + x^3 + x^2 + 1 without its first term: primitive
 
 
@@ -52,7 +52,7 @@ REMOTE = (
 )
 # The labels of its keys, in every language.
 REMOTE_SIGNS = dict(zip((device.name for device in REMOTE), "↑↓←→AB↔↕", strict=True))
-MOST_SENSORS_BESIDE_REMOTE = 8  # sensors at most: sets of readings have 16 bits
+MAX_SENSORS_BESIDE_REMOTE = 8  # sensors at most: sets of readings have 16 bits
 
 # Words of kits that are younger than 0.2: they give way to a program's own names.
 KIT_WORDS_SINCE = {device.name: "0.3" for device in REMOTE}
@@ -74,7 +74,7 @@ class Kit(NamedTuple):
     @property
     def has_remote(self) -> bool:
         """Return whether the readings of a remote control fit."""
-        return len(self.sensors) <= MOST_SENSORS_BESIDE_REMOTE
+        return len(self.sensors) <= MAX_SENSORS_BESIDE_REMOTE
 
     @property
     def readings(self) -> tuple[Device, ...]:

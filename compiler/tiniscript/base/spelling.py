@@ -67,10 +67,10 @@ def _edit_count(word: str, other_word: str) -> int:
     return last_row[-1]
 
 
-_LEAST_SOUND_LETTERS = 4  # letters that a word needs where only its sound is the same
-_LEAST_SWAP_LETTERS = 5  # … where two neighbours are exchanged
-_LEAST_SLIP_LETTERS = 6  # … where a letter is wrong, missing or too much
-_MOST_LETTERS = 24
+_MIN_SOUND_LETTERS = 4  # letters that a word needs where only its sound is the same
+_MIN_SWAP_LETTERS = 5  # … where two neighbours are exchanged
+_MIN_SLIP_LETTERS = 6  # … where a letter is wrong, missing or too much
+_MAX_LETTERS = 24
 
 
 @cache
@@ -91,25 +91,25 @@ class Speller:
     def __init__(self, words: Iterable[str]) -> None:
         self._word_by_sound: dict[tuple[int, str], str] = {}
         self._words_by_deletion: dict[str, list[str]] = {}
-        words = [word for word in words if len(word) >= _LEAST_SOUND_LETTERS]
+        words = [word for word in words if len(word) >= _MIN_SOUND_LETTERS]
         for language_number, sounds in enumerate(_sounds_of(words)):
             for sound, word in zip(sounds, words, strict=True):
                 self._word_by_sound.setdefault((language_number, sound), word)
         for word in words:
-            if len(word) >= _LEAST_SWAP_LETTERS:
+            if len(word) >= _MIN_SWAP_LETTERS:
                 for deletion in _deletions(word):
                     self._words_by_deletion.setdefault(deletion, []).append(word)
 
     def find_sound_alike(self, word: str) -> str | None:
         """Return the word that sounds like `word`, or None."""
-        if not _LEAST_SOUND_LETTERS <= len(word) <= _MOST_LETTERS:
+        if not _MIN_SOUND_LETTERS <= len(word) <= _MAX_LETTERS:
             return None
         sound_keys = ((k, sounds[0]) for k, sounds in enumerate(_sounds_of([word])))
         return next(filter(None, map(self._word_by_sound.get, sound_keys)), None)
 
     def find_near_miss(self, word: str) -> str | None:
         """Return a word that is one slip of the finger away from `word`, or None."""
-        if not _LEAST_SWAP_LETTERS <= len(word) <= _MOST_LETTERS or not word.isalpha():
+        if not _MIN_SWAP_LETTERS <= len(word) <= _MAX_LETTERS or not word.isalpha():
             return None
         for deletion in _deletions(word):
             for other in self._words_by_deletion.get(deletion, ()):
@@ -149,10 +149,10 @@ def _is_one_edit_away(word: str, other_word: str) -> bool:
     ):
         return True
     if (
-        min(len(word), len(other_word)) + k < _LEAST_SLIP_LETTERS
+        min(len(word), len(other_word)) + k < _MIN_SLIP_LETTERS
     ):  # `AVNZA`: a vowel omitted as in text messages
         return (
-            len(other_word) + k >= _LEAST_SLIP_LETTERS
+            len(other_word) + k >= _MIN_SLIP_LETTERS
             and other_word[:1] in tuple("AEIOU")
             and word == other_word[1:]
         )

@@ -209,7 +209,7 @@ def merge_translations(
             catalogue.problems.append((line, f"{key}: {problem}"))
         for entry in group:
             entry.line = line
-            for problem in find_misfits(entry, language):
+            for problem in find_problems(entry, language):
                 catalogue.problems.append((line, f"{key}: {problem}"))
                 entry.translation, entry.seen_hash = {}, ""
     for entry in catalogue.entries.values():
@@ -255,7 +255,7 @@ def assign_translations(entries: list[Entry], texts: list[Forms], hashes: list[s
     return ""
 
 
-def find_misfits(entry: Entry, language: Language) -> list[str]:
+def find_problems(entry: Entry, language: Language) -> list[str]:
     """Return the errors in the translation of an unchanged text."""
     if not entry.is_translated:
         return []

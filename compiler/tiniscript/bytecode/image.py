@@ -36,7 +36,7 @@ MAGIC = b"TS"
 # Features that code may need, and a machine may lack.
 TASKS, GO = NEEDS_TASKS, NEEDS_GO
 ALL_NEEDS = TASKS | GO
-LEAST_ISA = ISA_MAJOR, 0  # the version of code whose instructions all machines have
+MIN_ISA = ISA_MAJOR, 0  # the version of code whose instructions all machines have
 STARTS = ("SI", "SB", "PING")
 
 # The first fields are where they were in version 1, so that the length and the integrity of a

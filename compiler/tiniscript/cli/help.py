@@ -25,7 +25,7 @@ from tiniscript.cli.texts.verbs import (
 )
 
 WIDTH = 80  # columns, where the terminal has as many
-LEAST_WIDTH = 40
+MIN_WIDTH = 40
 SET_COMMAND = "set"
 
 Row = tuple[str, str]  # the command, and its description
@@ -195,4 +195,4 @@ def _width() -> int:
     """Return the width of help texts, which is smaller on a narrow terminal."""
     if not sys.stdout.isatty():
         return WIDTH
-    return max(LEAST_WIDTH, min(WIDTH, get_terminal_size().columns))
+    return max(MIN_WIDTH, min(WIDTH, get_terminal_size().columns))

@@ -17,7 +17,7 @@ from tiniscript.cli.texts import Sentence, say_aside
 from tiniscript.library import named_robot
 from tiniscript.robots.profile import ProfileRefused, Robot
 
-MOST_NAME_CHARACTERS = 200  # characters of a file's name
+MAX_NAME_CHARACTERS = 200  # characters of a file's name
 
 
 class Input(NamedTuple):
@@ -97,7 +97,7 @@ def check_port(name: str) -> str:
 
 def printable_name(name: str) -> str:
     """Return a file's name as a message can print it."""
-    return printable(name, MOST_NAME_CHARACTERS)
+    return printable(name, MAX_NAME_CHARACTERS)
 
 
 def robot(options: Namespace, language: str) -> Robot:

@@ -42,8 +42,8 @@ from tiniscript.robots.profile import Robot
 from tiniscript.virtual.module import NoWebAssembly
 from tiniscript.virtual.world import WorldRefused
 
-MOST_PROGRAMS = 200  # most programs in a folder
-LEAST_COLUMNS = 24  # columns that a sentence needs next to its program; otherwise below it
+MAX_PROGRAMS = 200  # most programs in a folder
+MIN_COLUMNS = 24  # columns that a sentence needs next to its program; otherwise below it
 TEXT_SUFFIXES = (*PROGRAM_SUFFIXES, ".txt")
 NOTES_NAME = re.compile(r"(?:read ?me|leeme|notes|notas)(?![^\W\d_])", re.IGNORECASE)  # names
 # A line of a program begins so, also a wrong one: `SI|`, `SI`, `F 2`, `ADELANTE (2)`, `x = 3`.
@@ -202,10 +202,10 @@ def _programs(options: Namespace) -> Iterator[tuple[str, ProgramFile]]:
         raise CommandError(
             2, "lesson_folder", file=inputs.printable_name(folder), why=error
         ) from None
-    names = list(islice(in_folder(folder, TEXT_SUFFIXES), MOST_PROGRAMS + 1))
-    if len(names) > MOST_PROGRAMS:
+    names = list(islice(in_folder(folder, TEXT_SUFFIXES), MAX_PROGRAMS + 1))
+    if len(names) > MAX_PROGRAMS:
         raise CommandError(
-            2, "lesson_many", file=inputs.printable_name(folder), most=str(MOST_PROGRAMS)
+            2, "lesson_many", file=inputs.printable_name(folder), most=str(MAX_PROGRAMS)
         )
     for name in names:
         yield os.path.relpath(name, folder), read(name)
@@ -278,10 +278,10 @@ def _print_table(marks: Sequence[Mark], options: Namespace, language: str) -> No
         if not columns or cell_len(shown_sentence) <= room:
             print(f"{prefix}{shown_sentence}".rstrip())
             continue
-        if room < LEAST_COLUMNS:  # the sentence has lines of its own
+        if room < MIN_COLUMNS:  # the sentence has lines of its own
             print(prefix.rstrip())
             prefix, room = "    ", columns - 5
-        for line in textwrap.wrap(shown_sentence, max(room, LEAST_COLUMNS)):
+        for line in textwrap.wrap(shown_sentence, max(room, MIN_COLUMNS)):
             print(f"{prefix}{line}")
             prefix = " " * cell_len(prefix)
     passed_count = sum(mark.verdict == PASSED for mark in marks)

@@ -9,10 +9,10 @@ from tiniscript.cli.errors import unwritable_error
 from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.streams import has_colors
 from tiniscript.cli.texts import Sentence, say_aside, text
-from tiniscript.diagnostics.codes import MOST_DIAGNOSTICS
+from tiniscript.diagnostics.codes import MAX_DIAGNOSTICS
 from tiniscript.library.compiling import Compilation
 
-MOST_PRINTED_DIAGNOSTICS = 20  # diagnostics that are printed; a person mends the first ones first
+MAX_PRINTED_DIAGNOSTICS = 20  # diagnostics that are printed; a person mends the first ones first
 
 
 def write(path: Path, data: bytes, error_key: str, mode: int | None = None) -> None:
@@ -52,16 +52,16 @@ def print_diagnostics(compilation: Compilation, language: str) -> None:
     from tiniscript.diagnostics.rendering import as_text, message
 
     color = has_colors(sys.stderr)
-    for diagnostic in compilation.diagnostics[:MOST_PRINTED_DIAGNOSTICS]:
+    for diagnostic in compilation.diagnostics[:MAX_PRINTED_DIAGNOSTICS]:
         shown_message = message(diagnostic, compilation.source, language)
         lines = as_text(shown_message, compilation.source, language, color).split("\n")
         frame = lines[: 2 * bool(compilation.source.text)]
         print(*frame, *map(Sentence, lines[len(frame) :]), "", sep="\n", file=sys.stderr)
     count = len(compilation.diagnostics)
-    if count > MOST_PRINTED_DIAGNOSTICS:
-        key = "and_more" if count <= MOST_DIAGNOSTICS else "and_many_more"
-        say_aside(key, language, n=min(count, MOST_DIAGNOSTICS) - MOST_PRINTED_DIAGNOSTICS)
-    if 1 < count <= MOST_PRINTED_DIAGNOSTICS:
+    if count > MAX_PRINTED_DIAGNOSTICS:
+        key = "and_more" if count <= MAX_DIAGNOSTICS else "and_many_more"
+        say_aside(key, language, n=min(count, MAX_DIAGNOSTICS) - MAX_PRINTED_DIAGNOSTICS)
+    if 1 < count <= MAX_PRINTED_DIAGNOSTICS:
         print(_count(compilation, language), file=sys.stderr)
 
 

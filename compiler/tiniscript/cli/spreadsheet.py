@@ -16,7 +16,7 @@ from tiniscript.base.languages import languages
 from tiniscript.base.source import printable
 from tiniscript.cli.texts import text
 
-MOST_CELL_CHARACTERS = 2000  # characters of a cell
+MAX_CELL_CHARACTERS = 2000  # characters of a cell
 TABLES = ("check", "lesson")
 # Characters that begin a formula: at the beginning of a cell; in a name also wherever a cell may
 # begin, because the person who opens the file chooses the separators. Ours are a comma or a
@@ -55,13 +55,13 @@ def escape_formula(text: str) -> str:
 
 
 def _name(value: object) -> str:
-    return _AFTER_ANY.sub(r"\1\2'", printable(str(value), MOST_CELL_CHARACTERS))
+    return _AFTER_ANY.sub(r"\1\2'", printable(str(value), MAX_CELL_CHARACTERS))
 
 
 def _cell(value: object) -> object:
     """Return a number, or a sentence that only its first character could make a formula."""
     return (
-        _FORMULA_START.sub(r"\1\2'", printable(value, MOST_CELL_CHARACTERS))
+        _FORMULA_START.sub(r"\1\2'", printable(value, MAX_CELL_CHARACTERS))
         if isinstance(value, str)
         else value
     )

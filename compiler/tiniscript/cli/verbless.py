@@ -102,8 +102,8 @@ def _quote(name: str, is_always_quoted: bool = False) -> str:
     return f'"{shown_name}"' if is_always_quoted or " " in shown_name else shown_name
 
 
-MOST_VERBS = 5  # verbs in an answer
-LEAST_LETTERS = 3  # shortest word with a meaning
+MAX_VERBS = 5  # verbs in an answer
+MIN_LETTERS = 3  # shortest word with a meaning
 STEM_LETTERS = 5  # letters in which forms of a word agree: connect, connected; conecta, conectar
 
 
@@ -127,7 +127,7 @@ def verbs_for(question: str) -> list[str]:
     commands = [
         command for command in COMMANDS if scores[command] and scores[command] >= best_score / 2
     ]
-    return sorted(commands, key=lambda verb: -scores[verb])[:MOST_VERBS]
+    return sorted(commands, key=lambda verb: -scores[verb])[:MAX_VERBS]
 
 
 def _weights(verb: str) -> dict[str, int]:
@@ -153,7 +153,7 @@ def _weights(verb: str) -> dict[str, int]:
 def _stems(text: str) -> set[str]:
     words = re.findall("[a-z]+", _without_accents(text))
     telling_words = (
-        word for word in words if len(word) >= LEAST_LETTERS and word not in _idle_words()
+        word for word in words if len(word) >= MIN_LETTERS and word not in _idle_words()
     )
     return {
         word.removesuffix("s")[:STEM_LETTERS] for word in telling_words

@@ -16,8 +16,8 @@ LACKING_ANSWERS = (
     ["REFUSED UNKNOWN_NEEDS"],
     ["REFUSED OTHER_VERSION"],
 )  # the second of a machine of 2.0
-MOST_ENDLESS = 3  # answers that hang or flood, after which no more are awaited,
-MOST_SILENT = 20  # and first runs without an answer, after which the machine is given up
+MAX_ENDLESS = 3  # answers that hang or flood, after which no more are awaited,
+MAX_SILENT = 20  # and first runs without an answer, after which the machine is given up
 
 
 class Verdict(NamedTuple):
@@ -65,7 +65,7 @@ def verdicts(cases: Iterable[MachineCase], answer_of: AskMachine) -> Iterator[Ve
             yield verdict._replace(outcome=error.kind, detail=error.detail)
             endless_count += error.kind in ("hang", "flood")
             silent_count += not answer_count
-            if endless_count == MOST_ENDLESS or silent_count == MOST_SILENT:
+            if endless_count == MAX_ENDLESS or silent_count == MAX_SILENT:
                 return
         else:
             answer_count += 1

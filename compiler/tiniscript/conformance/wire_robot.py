@@ -24,7 +24,7 @@ from tiniscript.link.messages import (
 )
 from tiniscript.link.wire import Wire
 
-MOST_TRIES = 6
+MAX_TRIES = 6
 HEARTBEAT_INTERVAL_S = 0.2
 POLL_INTERVAL_MS = 20
 HELLO_TRIES = 8  # HELLOs: a board may have been reset, or be in its bootloader
@@ -78,7 +78,7 @@ class WireRobot:
         self._unread = b""
         self._heartbeat_s = 0.0
 
-    def hello(self, try_count: int = MOST_TRIES) -> Answer:
+    def hello(self, try_count: int = MAX_TRIES) -> Answer:
         values = {"major": MAJOR, "minor": MINOR, "isa_major": ISA_MAJOR,
                   "isa_minor": ISA_MINOR, "kit": 0, "nonce": self.nonce}  # fmt: skip
         return self.ask("HELLO", values, try_count)
@@ -87,7 +87,7 @@ class WireRobot:
         self,
         name: str,
         values: Mapping[str, int | bytes] | None = None,
-        try_count: int = MOST_TRIES,
+        try_count: int = MAX_TRIES,
     ) -> Answer:
         """Return the answer to a request with a new number; send it again if none arrives."""
         message = BY_NAME[name]
@@ -95,7 +95,7 @@ class WireRobot:
         return self.ask_frame(message.number, payload, try_count, message=name)
 
     def ask_frame(
-        self, number: int, payload: bytes, try_count: int = MOST_TRIES, message: str = "",
+        self, number: int, payload: bytes, try_count: int = MAX_TRIES, message: str = "",
         epoch: int | None = None,
     ) -> Answer:  # fmt: skip
         """Send any message as a frame and return its reply; `epoch` replaces the robot's."""
@@ -103,7 +103,7 @@ class WireRobot:
         return self.repeat(number, payload, try_count, message, epoch)
 
     def repeat(
-        self, number: int, payload: bytes, try_count: int = MOST_TRIES, message: str = "",
+        self, number: int, payload: bytes, try_count: int = MAX_TRIES, message: str = "",
         epoch: int | None = None,
     ) -> Answer:  # fmt: skip
         """Send a request with the number of the previous one."""

@@ -12,7 +12,7 @@ from typing import NamedTuple
 from tiniscript.base.source import Edit, Span
 
 # Diagnostics after which a text is read no further, because more would not help.
-MOST_DIAGNOSTICS = 100
+MAX_DIAGNOSTICS = 100
 
 
 class Code(NamedTuple):

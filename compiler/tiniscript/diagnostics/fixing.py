@@ -47,9 +47,9 @@ def edits_of(diagnostic: Diagnostic) -> list[Edit] | None:
     return [Edit(place or diagnostic.span, new_text)]
 
 
-MOST_CHECKS = 400  # most checks of one program; a long one gets fewer
+MAX_CHECKS = 400  # most checks of one program; a long one gets fewer
 CHECKED_CHARACTERS = 600_000
-MOST_OFFERS = 20  # repairs of one text that are tried
+MAX_OFFERS = 20  # repairs of one text that are tried
 
 
 class RepairedProgram(NamedTuple):
@@ -68,7 +68,7 @@ def repair_program(text: str, check: Check) -> RepairedProgram:
 
     A long program takes long to check and has many mistakes, so it is checked fewer times.
     """
-    checks_left = min(MOST_CHECKS, 20 + CHECKED_CHARACTERS // (len(text) + 1)) - 1
+    checks_left = min(MAX_CHECKS, 20 + CHECKED_CHARACTERS // (len(text) + 1)) - 1
     diagnostics = check(text)
     count = 0
     steps = _repair_steps(diagnostics)
@@ -113,7 +113,7 @@ def _repair_steps(diagnostics: list[Diagnostic]) -> Iterator[list[tuple[Edit, ..
     """Yield the certain repairs that do not overlap, and then each one alone."""
     sure_repairs = [
         diagnostic.repair.edits
-        for diagnostic in diagnostics[: codes.MOST_DIAGNOSTICS]
+        for diagnostic in diagnostics[: codes.MAX_DIAGNOSTICS]
         if diagnostic.repair and diagnostic.repair.is_sure
     ]
     separate_repairs: list[tuple[Edit, ...]] = []
@@ -168,7 +168,7 @@ def drop_wrong_offers(
     another mistake in it may be reported as well. In a long text, the last diagnostics are not
     checked.
     """
-    checks_left = min(MOST_CHECKS, CHECKED_CHARACTERS // (len(text) + 1))
+    checks_left = min(MAX_CHECKS, CHECKED_CHARACTERS // (len(text) + 1))
     kept_diagnostics = list(diagnostics)
     for _ in _SHOWN_GAPS:
         offers = [

@@ -26,7 +26,7 @@ from tiniscript.diagnostics.codes import CODES, Diagnostic
 
 CATALOGUE = "messages"
 LINE_COLUMNS = 100  # columns of a program's line; a longer one is cut to a window
-MOST_COLUMNS_ON_LEFT = 40  # columns of that window before the place
+MAX_COLUMNS_ON_LEFT = 40  # columns of that window before the place
 ROW_CHARACTERS = 110  # a longer message has its suggestion in a row of its own
 VALUE_CHARACTERS = 60  # characters of the program's text within a message
 FIX_CHARACTERS = 200  # characters of a fix, which is cut only if a reader would not copy it
@@ -268,7 +268,7 @@ def _line_window(line: str, start: int, end: int) -> tuple[str, int, int]:
     left, right = 0, len(cells)
     if len(cells) < len(line) or sum(width for _, width in cells) > LINE_COLUMNS:
         left, used_columns = start_cell, 0
-        while left and used_columns + cells[left - 1][1] <= MOST_COLUMNS_ON_LEFT:
+        while left and used_columns + cells[left - 1][1] <= MAX_COLUMNS_ON_LEFT:
             left -= 1
             used_columns += cells[left][1]
         right = start_cell

@@ -35,7 +35,7 @@ from tiniscript.link.robot_state import line_error_count
 
 PING_COUNT = 20
 PING_PAUSE_MS = 50  # between two of them
-MOST_LOST = 2  # most messages of 20 that may be repeated or damaged
+MAX_LOST = 2  # most messages of 20 that may be repeated or damaged
 POLL_COUNT = 6  # whether it is still the same robot, and was not restarted meanwhile
 POLL_INTERVAL_MS = 250
 _STALL = next(number for number, name, _ in LINK_FAULTS if name == "STALL")
@@ -227,9 +227,9 @@ def _link_findings(
     }
     expectations.on_facts({"good": str(len(trips_ms)), **values})
     loss_findings = []
-    if max(missed_count, damaged_count) * PING_COUNT >= MOST_LOST * expectations.ping_count:
+    if max(missed_count, damaged_count) * PING_COUNT >= MAX_LOST * expectations.ping_count:
         loss_findings = [sure_finding("lossy", **values)] if status_after is not None else []
-    elif status_after is not None and line_error_count(status_before) >= 10 * MOST_LOST:
+    elif status_after is not None and line_error_count(status_before) >= 10 * MAX_LOST:
         loss_findings = [
             probable_finding("lossy", **{**values, "damaged": str(line_error_count(status_before))})
         ]

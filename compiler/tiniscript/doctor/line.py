@@ -71,7 +71,7 @@ HELLO_TRIES = 5  # an old Nano's bootloader takes longer
 BAUDS = (9600, 115200, 57600, 38400, 19200)
 LISTEN_MS = 400  # time to listen for a sketch's output at one speed
 PROBE_TIMEOUT_MS, RADIO_PROBE_TIMEOUT_MS = 200, 500  # time for the answer of a foreign board
-LEAST_BYTES = 4  # fewer bytes are not enough
+MIN_BYTES = 4  # fewer bytes are not enough
 
 
 class PortFacts(NamedTuple):
@@ -241,7 +241,7 @@ def _find_module(wire: Wire, bauds: tuple[int, ...]) -> Finding | None:
 
 def _diagnose_radio(received_bytes: bytes) -> Finding:
     """Diagnose the device connected to a module that answers while its port is open."""
-    if len(received_bytes) >= LEAST_BYTES:
+    if len(received_bytes) >= MIN_BYTES:
         return probable_finding("module_baud", n=str(len(received_bytes)))
     return probable_finding("crossed")
 
@@ -296,7 +296,7 @@ def _diagnose_cable(
         best_finding
         or (
             probable_finding("garbled", n=str(garbage_bytes))
-            if garbage_bytes >= LEAST_BYTES
+            if garbage_bytes >= MIN_BYTES
             else probable_finding("silent")
         )
     ]

@@ -10,7 +10,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from tiniscript.bytecode.image import LEAST_ISA
+from tiniscript.bytecode.image import MIN_ISA
 from tiniscript.link.connection import LinkConnection, PendingRequest, Requester
 from tiniscript.link.frames import Frame, decode_frame, encode_frame
 from tiniscript.link.messages import BY_NAME, MAJOR, MINOR, encode_payload
@@ -19,11 +19,11 @@ from tiniscript.link.payloads import HelloReply, SentReply, StatusReply
 from tiniscript.link.requests import OK, Reply, reply_of
 from tiniscript.link.wire import Wire
 
-MOST_TRIES = 3
-MOST_READS = 4  # most reads of the wire in one try, because events may come in between
+MAX_TRIES = 3
+MAX_READS = 4  # most reads of the wire in one try, because events may come in between
 CABLE_TIMEOUT_MS, RADIO_TIMEOUT_MS = 300, 700  # time for an answer
 SHARED_TIMEOUT_MS = 4000  # time for an answer through another tsc, which retries itself
-MOST_UNANSWERED = 3  # unanswered questions in a row after which the check ends
+MAX_UNANSWERED = 3  # unanswered questions in a row after which the check ends
 
 
 class Robot(ABC):
@@ -34,13 +34,13 @@ class Robot(ABC):
     has_tried_keys = False
 
     @abstractmethod
-    def ask(self, name: str, try_count: int = MOST_TRIES) -> Reply[SentReply] | None:
+    def ask(self, name: str, try_count: int = MAX_TRIES) -> Reply[SentReply] | None:
         """Return the reply to HELLO, STATUS, PING or TRIM; None if none came."""
 
     @abstractmethod
     def pause(self, wait_ms: int) -> None: ...
 
-    def hello(self, try_count: int = MOST_TRIES) -> Reply[SentReply] | None:
+    def hello(self, try_count: int = MAX_TRIES) -> Reply[SentReply] | None:
         return self.ask("HELLO", try_count)
 
     def status(self) -> StatusReply | None:
@@ -60,7 +60,7 @@ class WireRobot(Robot):
         self.received = self.sent = b""
         self._seq = 0
         self._epoch = 0
-        isa = LEAST_ISA
+        isa = MIN_ISA
         hello = {"major": MAJOR, "minor": MINOR, "isa_major": isa[0], "isa_minor": isa[1],
                  "kit": kit, "nonce": nonce}  # fmt: skip
         # TRIM without a value returns the stored trim.
@@ -69,7 +69,7 @@ class WireRobot(Robot):
     def pause(self, wait_ms: int) -> None:
         self.received += self.wire.receive(wait_ms, wait_ms)
 
-    def ask(self, name: str, try_count: int = MOST_TRIES) -> Reply[SentReply] | None:
+    def ask(self, name: str, try_count: int = MAX_TRIES) -> Reply[SentReply] | None:
         """Ask until an answer arrives; each try begins with 0x00, as in `docs/develop/link.md`."""
         values = self._values.get(name, {})
         self._seq = (self._seq + 1) & 0xFF
@@ -89,7 +89,7 @@ class WireRobot(Robot):
 
     def _read_reply(self, name: str, number: int) -> Reply[SentReply] | None:
         buffer = b""
-        for _ in range(MOST_READS):
+        for _ in range(MAX_READS):
             new_bytes = self.wire.receive(self.answer_timeout_ms)
             if not new_bytes:
                 break
@@ -125,13 +125,13 @@ class SharedRobot(Robot):
     def pause(self, wait_ms: int) -> None:
         self.connection.event(wait_ms / 1000)
 
-    def ask(self, name: str, try_count: int = MOST_TRIES) -> Reply[SentReply] | None:
+    def ask(self, name: str, try_count: int = MAX_TRIES) -> Reply[SentReply] | None:
         def with_limit(session: Requester) -> PendingRequest[Any]:
             request: PendingRequest[Any] = getattr(session, name.lower())()
             request.limit_ms = SHARED_TIMEOUT_MS
             return request
 
-        if self._unanswered_count < MOST_UNANSWERED:
+        if self._unanswered_count < MAX_UNANSWERED:
             reply: Reply[SentReply] = self._wait(self.connection.begin(with_limit))
             if reply.status not in (LOST, CANCELLED):
                 self._unanswered_count = 0

@@ -15,7 +15,7 @@ from tiniscript.base.files import read_limited
 from tiniscript.link import ports
 from tiniscript.link.ports import ListedPort
 
-MOST_FILE_BYTES = 65_536
+MAX_FILE_BYTES = 65_536
 OUTPUT_TIMEOUT_S = 8.0  # timeout of a program
 
 
@@ -50,9 +50,7 @@ class System:
 
     def text(self, path: str) -> str | None:
         try:
-            return (
-                read_limited(self._path(path), MOST_FILE_BYTES).decode("utf-8", "replace").strip()
-            )
+            return read_limited(self._path(path), MAX_FILE_BYTES).decode("utf-8", "replace").strip()
         except (OSError, ValueError):
             return None
 

@@ -25,8 +25,8 @@ EXIT_TIMEOUT_S = 5.0  # time to exit after its last output
 RUN_TIMEOUT_S = (
     300.0  # timeout of the whole run: writing and reading back a Mega's 256 KB takes 50 s
 )
-MOST_OUTPUT_BYTES = 200_000  # limit of its output; about 2,000 are normal
-MOST_ATTEMPTS = 2  # attempts before giving up; avrdude would make ten, of five seconds each
+MAX_OUTPUT_BYTES = 200_000  # limit of its output; about 2,000 are normal
+MAX_ATTEMPTS = 2  # attempts before giving up; avrdude would make ten, of five seconds each
 BAR_MARKS = 50  # marks of a full bar
 
 WRITING, READING = "writing", "reading"
@@ -153,12 +153,12 @@ class _Watch:
         self._on_progress(progress)
         if output != self._output:
             self._output, self._output_s = output, now_s
-        if now_s - self._began_s >= RUN_TIMEOUT_S or len(output) > MOST_OUTPUT_BYTES:
+        if now_s - self._began_s >= RUN_TIMEOUT_S or len(output) > MAX_OUTPUT_BYTES:
             raise _GivenUp(ENDLESS)
         if progress is not None:
             if now_s - self._output_s >= SILENCE_TIMEOUT_S:
                 raise _GivenUp(BROKEN_OFF)
-        elif now_s - self._output_s >= NO_ANSWER_TIMEOUT_S or _attempt(output) >= MOST_ATTEMPTS:
+        elif now_s - self._output_s >= NO_ANSWER_TIMEOUT_S or _attempt(output) >= MAX_ATTEMPTS:
             raise _GivenUp(NOBODY)
 
 

@@ -15,9 +15,9 @@ from tiniscript.robots.profile import Robot, language_number
 
 FOLDER = Path(__file__).resolve().parent / "ready"
 NOTICE_FILE = "NOTICE.txt"
-MOST_FILES = 30  # files in the cache; the oldest go first
+MAX_FILES = 30  # files in the cache; the oldest go first
 BREAKPOINTS = "breakpoints"  # part of a title
-MOST_NAME_CHARACTERS = 24  # most characters of a title in a file's name
+MAX_NAME_CHARACTERS = 24  # most characters of a title in a file's name
 IMAGE_OFFSETS = {"esp32dev": 0x1000, "esp32c3": 0}  # offset of the image in each board's flash
 IMAGE_MAGIC = b"\xe9"  # the first byte of an image
 DATA_RECORD, END_RECORD = "00", "01"  # record types in a HEX file
@@ -57,7 +57,7 @@ def title_of(robot: Robot, has_breakpoints: bool = False) -> str:
 
 def file_name_of(title: str, board: str, digest: str) -> str:
     safe_title = "".join(letter if letter.isalnum() else "_" for letter in title)
-    return f"{safe_title[:MOST_NAME_CHARACTERS]}-{board}-{digest}.hex"
+    return f"{safe_title[:MAX_NAME_CHARACTERS]}-{board}-{digest}.hex"
 
 
 def files(folder: Path = FOLDER) -> list[ReadyFile]:
@@ -110,7 +110,7 @@ def store(title: str, board: str, digest: str, data: bytes) -> ReadyFile:
     path = folder / file_name_of(title, board, digest)
     replace(path, data)
     cached_files = sorted(folder.glob("*.hex"), key=lambda path: path.stat().st_mtime_ns)
-    for old_file in cached_files[:-MOST_FILES]:
+    for old_file in cached_files[:-MAX_FILES]:
         if old_file != path:
             old_file.unlink(missing_ok=True)
     return ReadyFile(title, board, digest, path)

@@ -43,9 +43,9 @@ from tiniscript.virtual.world import World
 
 LABEL_CHARACTERS = 80
 PROGRAM_CHARACTERS = 20_000
-MOST_SECONDS, MOST_WORLDS, MOST_NOISE = 600, 20, 20
-MOST_CM = 2000
-MOST_ROWS = 100  # criteria, variations, answers, presses
+MAX_SECONDS, MAX_WORLDS, MAX_NOISE = 600, 20, 20
+MAX_CM = 2000
+MAX_ROWS = 100  # criteria, variations, answers, presses
 GAP_NAME = re.compile(r"\{(\w+)\}")
 PART = re.compile(r"(start)|(walls|boxes|lines|lamps)\[([1-9][0-9]{0,2})\]")
 NO_LABELS = ByLanguage(
@@ -71,9 +71,9 @@ def read(text: str, world: World, name: str) -> Lesson:
             printable_value(name),
             robot,
             titles,
-            root.number("seconds", ONE, MOST_SECONDS * ONE, "seconds = 20", ONE) / ONE,
-            root.whole_number("worlds", 1, MOST_WORLDS, default=1),
-            root.number("noise_percent", 0, MOST_NOISE * ONE) / ONE / 100,
+            root.number("seconds", ONE, MAX_SECONDS * ONE, "seconds = 20", ONE) / ONE,
+            root.whole_number("worlds", 1, MAX_WORLDS, default=1),
+            root.number("noise_percent", 0, MAX_NOISE * ONE) / ONE / 100,
             root.yes_no("mirror", False),
             world,
             tuple(_variation(row, world) for row in _rows(root, "varies")),
@@ -97,9 +97,9 @@ def read_answers(text: str) -> tuple[list[Answer], list[Answer]]:
 
 def _rows(root: Table, key: str) -> list[Table]:
     tables = root.tables(key)
-    if len(tables) > MOST_ROWS:
-        root.complain("too_many_parts", key, found=str(len(tables)), most=str(MOST_ROWS))
-    return tables[:MOST_ROWS]
+    if len(tables) > MAX_ROWS:
+        root.complain("too_many_parts", key, found=str(len(tables)), most=str(MAX_ROWS))
+    return tables[:MAX_ROWS]
 
 
 def _answer(table: Table, is_wrong: bool) -> Answer:
@@ -156,7 +156,7 @@ def _variation(table: Table, world: World) -> Variation:
     place = Place("start", 0) if text is None else _part(table, "part", text, world)
     spans = [
         _span(table, *key_and_limit)
-        for key_and_limit in (("x_cm", MOST_CM), ("y_cm", MOST_CM), ("heading", 360))
+        for key_and_limit in (("x_cm", MAX_CM), ("y_cm", MAX_CM), ("heading", 360))
     ]
     if place.part == "lamps" and table.check_for("heading"):
         table.complain("lamp_has_no_heading", "heading")
@@ -171,8 +171,8 @@ def _presses(tables: list[Table]) -> tuple[Press, ...]:
     for table in tables:
         earliest = round(presses[-1].end_seconds * ONE) if presses else 0
         example = f"at_seconds = {earliest / ONE:g}"
-        start = table.number("at_seconds", earliest, MOST_SECONDS * ONE, example)
-        duration = table.number("seconds", ONE // 10, MOST_SECONDS * ONE, "seconds = 1")
+        start = table.number("at_seconds", earliest, MAX_SECONDS * ONE, example)
+        duration = table.number("seconds", ONE // 10, MAX_SECONDS * ONE, "seconds = 1")
         presses.append(Press(start / ONE, duration / ONE, table.choice("key", keys)))
         table.finish()
     return tuple(presses)
@@ -227,7 +227,7 @@ def _criterion(table: Table, world: World, known_words: Mapping[str, tuple[str, 
     places = _places(table, world, kind.places) if has_places else ()
     area = None
     if kind.has_area and any(table.check_for(key) for key in AREA_KEYS):
-        x_cm, y_cm = (_span(table, key, MOST_CM) for key in AREA_KEYS)
+        x_cm, y_cm = (_span(table, key, MAX_CM) for key in AREA_KEYS)
         area = x_cm, y_cm
     labels: dict[str, str] = NO_LABELS
     if has_places and any(map(table.check_for, languages())):
@@ -287,7 +287,7 @@ def _places(table: Table, world: World, least_count: int) -> tuple[Place, ...]:
             places.append(_part(table, "at", item, world))
         elif isinstance(item, list) and len(item) == 2:
             pairs = Table({"at": [item]}, table.path, table.reasons)
-            points = pairs.pairs("at", -MOST_CM * ONE, MOST_CM * ONE, "")
+            points = pairs.pairs("at", -MAX_CM * ONE, MAX_CM * ONE, "")
             for x_cm, y_cm in points or ():
                 places.append(Place("", 0, x_cm / ONE, y_cm / ONE))
         else:

@@ -1,7 +1,7 @@
 """Lets a program drive in the world of a seed, and records what a teacher would see.
 
 The robot is the virtual one, in its own time: a run takes no longer than it must, and gives the
-same on every computer. A run is cut after the lesson's seconds, and after MOST_EVENTS actions, so
+same on every computer. A run is cut after the lesson's seconds, and after MAX_EVENTS actions, so
 that no program holds a checker up.
 """
 
@@ -23,7 +23,7 @@ from tiniscript.virtual.robot import Settings, VirtualRobot
 from tiniscript.virtual.world import World
 
 STEP_MS = 20  # between two looks at where the robot is
-MOST_EVENTS = 200_000  # most events in a run
+MAX_EVENTS = 200_000  # most events in a run
 UPLOAD_LIMIT_MS = 60_000  # limit for the way of a program to the robot
 PUSH_MS = 60
 
@@ -142,7 +142,7 @@ class Trial:
                 return None
             self.step(min(robot.now_ms + STEP_MS, self._limit_ms))
             witness.record_state()
-            if witness.events > MOST_EVENTS:
+            if witness.events > MAX_EVENTS:
                 robot.rest()
                 return witness.run(BUSY)
         return witness.run(FAULT if robot.fault else DONE)

@@ -28,7 +28,7 @@ from tiniscript.library.refusing import refusal
 from tiniscript.library.runs import check_whole_number, checked_number
 from tiniscript.link import known_ports, ports
 from tiniscript.link.connection import Requester
-from tiniscript.link.messages import MOST_PAD, REMOTE_KEYS, STATE_RUNNING
+from tiniscript.link.messages import MAX_PAD, REMOTE_KEYS, STATE_RUNNING
 from tiniscript.link.names import saved_name
 from tiniscript.link.outcomes import CANCELLED, LOST, Event
 from tiniscript.link.payloads import ReceiptReply
@@ -42,7 +42,7 @@ if TYPE_CHECKING:
     T = TypeVar("T")
 
 VERB = "python"  # the name that other commands show for the process that holds the port
-MOST_TIMEOUT_S = 10**9
+MAX_TIMEOUT_S = 10**9
 POLL_INTERVAL_S = 0.1
 
 
@@ -181,7 +181,7 @@ class RobotConnection:
         """
         self._check_open()
         if timeout is not None:
-            checked_number("timeout", timeout, 0, MOST_TIMEOUT_S, self.language)
+            checked_number("timeout", timeout, 0, MAX_TIMEOUT_S, self.language)
         end_s = None if timeout is None else monotonic() + timeout
         any_run_follower = Follower(None)
         while self._follower is None or self._ending is None:
@@ -238,7 +238,7 @@ class RobotConnection:
         """
         self._check_open()
         for axis, percent in (("x", x), ("y", y)):
-            check_whole_number(axis, percent, -MOST_PAD, MOST_PAD, self.language)
+            check_whole_number(axis, percent, -MAX_PAD, MAX_PAD, self.language)
         for key in keys:
             if key not in REMOTE_KEYS:
                 values = {"found": printable(repr(key)), "known": ", ".join(REMOTE_KEYS)}
@@ -377,7 +377,7 @@ def connect(
         port = _default_port(language)
     elif not isinstance(port, str) or not port.strip() or not port.isprintable():
         raise UsageError(
-            "bad_port", language, {"port": printable(repr(port), opening.MOST_NAME_CHARACTERS)}
+            "bad_port", language, {"port": printable(repr(port), opening.MAX_NAME_CHARACTERS)}
         )
     return RobotConnection(port, profile, robot is not None, baud, language)
 

@@ -33,7 +33,7 @@ STOP_BUSY_TIMEOUT_S = 10.0  # the same for a stop: a silent robot's owner gives 
 RETRY_INTERVAL_S = 0.05
 SLOWEST_BAUD, FASTEST_BAUD = 300, 2_000_000
 OPEN_TIMEOUT_S = 20.0  # timeout for opening a port
-MOST_NAME_CHARACTERS = 200  # characters of a name in a sentence
+MAX_NAME_CHARACTERS = 200  # characters of a name in a sentence
 
 ANSWER_TIMEOUT_MS = 6000  # timeout for HELLO by radio
 # A cable has a shorter timeout, and HELLO gets two tries: an Uno needs 1.4 s after a reset.
@@ -209,8 +209,8 @@ def is_virtual(port: str) -> bool:
 
 
 def printable_name(name: str) -> str:
-    """Return a name in a form for sentences: printable, at most MOST_NAME_CHARACTERS characters."""
-    return printable(name, MOST_NAME_CHARACTERS)
+    """Return a name in a form for sentences: printable, at most MAX_NAME_CHARACTERS characters."""
+    return printable(name, MAX_NAME_CHARACTERS)
 
 
 def _join_shared(port: str, verb: str, baud: int | None, language: str) -> SharedConnection | None:

@@ -25,9 +25,9 @@ from tiniscript.robots.profile import ProfileRefused, Robot
 from tiniscript.robots.refusals import describe
 
 Language = str  # a language code, such as "en"
-MOST_VALUE_CHARACTERS = 200  # characters of a name or a value in a sentence
-MOST_REMARK_CHARACTERS = 60  # characters of a line in a disassembly
-MOST_FILE_BYTES = 1_000_000  # most bytes of a file
+MAX_VALUE_CHARACTERS = 200  # characters of a name or a value in a sentence
+MAX_REMARK_CHARACTERS = 60  # characters of a line in a disassembly
+MAX_FILE_BYTES = 1_000_000  # most bytes of a file
 FILE_SUFFIXES = (*PROGRAM_SUFFIXES, ".bin")
 
 
@@ -128,14 +128,14 @@ def show(
 def _refuse_file_name(text: str, language: Language) -> None:
     """Raise UsageError where a text is the name of a program's file."""
     if text.lower().endswith(FILE_SUFFIXES) and "\n" not in text and os.path.exists(text):  # noqa: PTH110
-        values = {"path": printable(text, MOST_VALUE_CHARACTERS)}
+        values = {"path": printable(text, MAX_VALUE_CHARACTERS)}
         raise UsageError("file_name", _check_language(language), values)
 
 
 def _read_file(path: os.PathLike[str], language: Language) -> str | bytes:
     """Return the text of a program's file, or the bytes of an image. Raises UsageError."""
     try:
-        data = read_limited(Path(path), MOST_FILE_BYTES)
+        data = read_limited(Path(path), MAX_FILE_BYTES)
         return data if Path(path).suffix.lower() == ".bin" else data.decode("utf-8-sig")
     except (OSError, ValueError) as error:
         text = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
@@ -203,9 +203,9 @@ def remarks(program_map: SourceMap | None, language: Language) -> dict[int, str]
     for location in program_map.locations:
         line = program_map.line(location.line)
         shown_text = line.strip()
-        if len(shown_text) > MOST_REMARK_CHARACTERS:  # a long line: only its instruction
+        if len(shown_text) > MAX_REMARK_CHARACTERS:  # a long line: only its instruction
             end = location.end_column - 1 if location.end_line == location.line else len(line)
-            shown_text = line[location.column - 1 : end][:MOST_REMARK_CHARACTERS]
+            shown_text = line[location.column - 1 : end][:MAX_REMARK_CHARACTERS]
         values = {"line": str(location.line), "shown": printable(shown_text.replace("\t", " "))}
         remark_by_offset[location.offset] = sentence("line", language, values)
     return remark_by_offset
@@ -276,7 +276,7 @@ def _unpack(data: bytes, language: Language) -> Image:
 def _check_language(language: Language) -> Language:
     if language not in languages():
         values = {
-            "found": printable(repr(language), MOST_VALUE_CHARACTERS),
+            "found": printable(repr(language), MAX_VALUE_CHARACTERS),
             "known": ", ".join(languages()),
         }
         raise UsageError("bad_language", "en", values)

@@ -24,7 +24,7 @@ Value = float | bool | str  # an int where a number has no decimals
 Readings = Mapping[str, "float | bool | Sequence[float | bool]"]
 
 LONGEST_RUN_S = 10**9
-MOST_STEPS = 10**15
+MAX_STEPS_LIMIT = 10**15
 LARGEST_SEED = 2**32 - 1
 
 
@@ -95,7 +95,7 @@ def run(
     ready_program = program_of(program, robot, language)
     profile, image = ready_program._profile, ready_program._image
     max_ms = round(checked_number("max_time", max_time, 0, LONGEST_RUN_S, language) * 1000)
-    check_whole_number("max_steps", max_steps, 0, MOST_STEPS, language)
+    check_whole_number("max_steps", max_steps, 0, MAX_STEPS_LIMIT, language)
     check_whole_number("seed", seed, 1, LARGEST_SEED, language)
     reading_lists = thousandths(sensors or {}, profile, language)
     if machine not in ("python", "cpp"):

@@ -26,9 +26,9 @@ from tiniscript.virtual.robot import Settings, VirtualRobot
 from tiniscript.virtual.simulator import SimulatorThread
 from tiniscript.virtual.world import WorldRefused
 
-MOST_NOISE = 0.5
+MAX_NOISE = 0.5
 MIN_SPEEDUP, MAX_SPEEDUP = 0.1, 10_000
-LEAST_MOTOR_PERCENT, MOST_MOTOR_PERCENT = 10, 200  # percent
+MIN_MOTOR_PERCENT, MAX_MOTOR_PERCENT = 10, 200  # percent
 
 
 def virtual_robot(
@@ -54,10 +54,10 @@ def virtual_robot(
     if hurry != math.inf:
         checked_number("hurry", hurry, MIN_SPEEDUP, MAX_SPEEDUP, language)
     check_whole_number("seed", seed, 1, LARGEST_SEED, language)
-    checked_number("noise", noise, 0, MOST_NOISE, language)
+    checked_number("noise", noise, 0, MAX_NOISE, language)
     left, right = motors
     for motor in (left, right):
-        checked_number("motors", motor, LEAST_MOTOR_PERCENT, MOST_MOTOR_PERCENT, language)
+        checked_number("motors", motor, MIN_MOTOR_PERCENT, MAX_MOTOR_PERCENT, language)
     reading_lists = thousandths(sensors or {}, profile, language)
     settings = Settings(seed=seed, noise=noise, motors=(left, right), given_readings=reading_lists)
     simulated_robot = SimulatedRobot(

@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from tiniscript.library.compiling import Compilation
 
 VERSION = 1
-MOST_FILE_BYTES = 32_000_000
-MOST_MAPS = 1000  # maps in the cache; the oldest go first
+MAX_FILE_BYTES = 32_000_000
+MAX_MAPS = 1000  # maps in the cache; the oldest go first
 
 
 class MapLocation(NamedTuple):
@@ -156,7 +156,7 @@ def recall(checksum: int) -> SourceMap | None:
     """Return the map of the image with this checksum, if it is in the cache."""
     path = _path(checksum)
     try:
-        return from_json(read_limited(path, MOST_FILE_BYTES).decode("utf-8"))
+        return from_json(read_limited(path, MAX_FILE_BYTES).decode("utf-8"))
     except OSError:
         return None
     except (ValueError, OverflowError, RecursionError):
@@ -173,9 +173,9 @@ def _forget_oldest(folder: Path) -> None:
     names = os.listdir(folder)  # noqa: PTH208 - a thousand Paths cost more than their names
     files.remove_abandoned(folder, names)
     map_names = [name for name in names if name.endswith(".json")]
-    if len(map_names) > MOST_MAPS:
+    if len(map_names) > MAX_MAPS:
         dated_names = sorted((_modification_s(folder / name), name) for name in map_names)
-        for _, name in dated_names[: len(map_names) - MOST_MAPS]:
+        for _, name in dated_names[: len(map_names) - MAX_MAPS]:
             with suppress(OSError):
                 (folder / name).unlink()
 

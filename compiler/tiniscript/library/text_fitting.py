@@ -10,7 +10,7 @@ from tiniscript.base.kit import Kit
 from tiniscript.base.source import Source, Span
 from tiniscript.base.words import WORDS
 from tiniscript.codegen.text.line import PlainCode, plain_code, spell_out
-from tiniscript.codegen.text.memory import MOST_BRACKETS, Reader
+from tiniscript.codegen.text.memory import MAX_BRACKETS, Reader
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.robots.text_levels import CODE_BYTES, LONGEST_WORD, Level
@@ -46,7 +46,7 @@ def find_misfits(source: Source, program: Program, kit: Kit, level: Level) -> li
     reader = Reader(tokens, kit, level.sensor_bytes)
     reader.program()
     if reader.extra_bracket_span is not None:
-        values = {"level": level.name, "limit": str(MOST_BRACKETS)}
+        values = {"level": level.name, "limit": str(MAX_BRACKETS)}
         diagnostics.append(Diagnostic(codes.LEVEL_BRACKETS, reader.extra_bracket_span, values))
     for need in reader.needs:
         if need.byte_count > level.room:

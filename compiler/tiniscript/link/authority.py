@@ -20,7 +20,7 @@ from tiniscript.link.seal import Seal, session_key, siphash
 NOT_OWNER, WRONG_KEY, HOLD_BUTTON, STALE = (
     STATUSES[name] for name in ("NOT_OWNER", "WRONG_KEY", "HOLD_BUTTON", "STALE")
 )
-MOST_PENDING_KEYS = 1  # keys tried before a new one, because each takes time
+MAX_PENDING_KEYS = 1  # keys tried before a new one, because each takes time
 HOLD_PAUSE_MS = 200  # pause between questions while the button is up
 FREE, OWNED_BY_YOU, OWNED_BY_OTHER = "free", "yours", "other"
 
@@ -79,7 +79,7 @@ class KeyRing:
                 *(
                     robot_key
                     for robot_key in keys
-                    if robot_key not in pending_keys[:-MOST_PENDING_KEYS]
+                    if robot_key not in pending_keys[:-MAX_PENDING_KEYS]
                 ),
                 key,
             ]

@@ -43,7 +43,7 @@ STATUS = "status"  # the robot's status contains the reason
 
 FOREIGN = "link_foreign"  # `find_stranger` identifies the other device
 EXCHANGE_TIMEOUT_MS = 20_000  # default timeout of a request
-MOST_EARLY_BYTES = 2048  # most bytes that are kept before a robot answers
+MAX_EARLY_BYTES = 2048  # most bytes that are kept before a robot answers
 CLAIM_TIMEOUT_MS = 30_000  # the time for which the robot waits for a hand on its button
 T = TypeVar("T")
 
@@ -127,7 +127,7 @@ class Requester:
 
     def break_at(self, places: Sequence[int]) -> PendingRequest[EmptyReply]:
         """Set breakpoints at these offsets of the running program, or of the stored one,
-        MOST_BREAKPOINTS at most; an empty list removes them.
+        MAX_BREAKPOINTS at most; an empty list removes them.
         """
         packed_bytes = b"".join(place.to_bytes(2, "little") for place in places)
         return self._ask("break_at", EmptyReply, places=packed_bytes)
@@ -211,7 +211,7 @@ class LinkConnection:
         """Count received bytes, and keep them while no robot has answered."""
         self.heard_count += len(data)
         if data and self.robot is None:
-            self.early_bytes = (self.early_bytes + data)[-MOST_EARLY_BYTES:]
+            self.early_bytes = (self.early_bytes + data)[-MAX_EARLY_BYTES:]
 
     @property
     def robot(self) -> DeviceInfo | None:

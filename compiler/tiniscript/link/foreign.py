@@ -36,10 +36,10 @@ from tiniscript.link.frames import decode_frame
 from tiniscript.link.messages import FIRST_EVENT
 
 CATALOGUE = "foreign"
-MOST_TEXT_CHARACTERS = 60  # characters of the message
-LEAST_BYTES = 4  # fewer bytes are not enough
-LEAST_PRINTABLE_SHARE = 0.9  # the share of printable characters in text
-LEAST_DIFFERENT_BYTES = 3  # different bytes in text: the noise of a wrong speed repeats itself
+MAX_TEXT_CHARACTERS = 60  # characters of the message
+MIN_BYTES = 4  # fewer bytes are not enough
+MIN_PRINTABLE_SHARE = 0.9  # the share of printable characters in text
+MIN_DIFFERENT_BYTES = 3  # different bytes in text: the noise of a wrong speed repeats itself
 ROBOT_LINE_START = "//"  # a robot's lines begin so
 OTHER_SKETCH = "other_sketch"  # the row of any device that prints text and has no row of its own
 ECHO_SKETCH = "echo_sketch"
@@ -213,9 +213,9 @@ def readable_line(data: bytes) -> str:
 
     If no line ends all of them have to be.
     """
-    if len(data) < LEAST_BYTES or len(set(data)) < LEAST_DIFFERENT_BYTES:
+    if len(data) < MIN_BYTES or len(set(data)) < MIN_DIFFERENT_BYTES:
         return ""
-    least_share = LEAST_PRINTABLE_SHARE if _has_line(data) else 1.0
+    least_share = MIN_PRINTABLE_SHARE if _has_line(data) else 1.0
     text = re.sub(r"\x1b\[[0-9;]*m", "", data.decode("utf-8", "replace"))  # colours
     readable_count = sum(
         (letter.isprintable() and letter != "�") or letter in "\r\n\t" for letter in text
@@ -232,7 +232,7 @@ def _has_line(data: bytes) -> bool:
 
 def _printable(line: str) -> str:
     text = re.sub(r"\x1b\[[0-9;]*m", "", line).strip()
-    return "".join(letter for letter in text if letter.isprintable())[:MOST_TEXT_CHARACTERS]
+    return "".join(letter for letter in text if letter.isprintable())[:MAX_TEXT_CHARACTERS]
 
 
 class Explanation(NamedTuple):
@@ -253,5 +253,5 @@ def explain(board: ForeignBoard, language: str) -> Explanation:
     meaning, advice = explanation_of(board.name, language)
     says_form = languages.text(CATALOGUE, "says", language)
     return Explanation(
-        says_form.format(what=meaning, said=printable(board.text, MOST_TEXT_CHARACTERS)), advice
+        says_form.format(what=meaning, said=printable(board.text, MAX_TEXT_CHARACTERS)), advice
     )

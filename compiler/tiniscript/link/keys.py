@@ -23,7 +23,7 @@ from tiniscript.link.messages import KEY_BYTES, KEYS
 
 FILE_BYTES = 1_000_000
 NAME_CHARACTERS = 16
-MOST_KEYS = 2000  # keys in a file
+MAX_KEYS = 2000  # keys in a file
 FILE_MODE = 0o600  # readable by this user only
 _LOCK = Lock()  # the robots of a fleet have threads of their own
 # Names of a key's fields in the file.
@@ -150,7 +150,7 @@ class KeyFile(KeyRing):
         self.path.parent.chmod(0o700)
 
     def _write_keys(self, keys: list[RobotKey]) -> None:
-        if len(keys) > MOST_KEYS:
+        if len(keys) > MAX_KEYS:
             raise TooManyKeys
         try:
             files.replace(self.path, encode_keys(keys), FILE_MODE)
@@ -204,7 +204,7 @@ def decode_keys(data: bytes) -> list[RobotKey]:
         document = json.loads(data)
         if document["tiniscript_keys"] != 1:
             raise BadKeys
-        if len(document["keys"]) > MOST_KEYS:
+        if len(document["keys"]) > MAX_KEYS:
             raise BadKeys
         return [_key(row) for row in document["keys"]]
     except (ValueError, TypeError, KeyError, IndexError, RecursionError):

@@ -16,7 +16,7 @@ from tiniscript.base.source import printable
 from tiniscript.link.port_names import canonical_port, is_address
 
 FILE_BYTES = 1_000_000
-MOST_PORTS = 2000  # ports; the oldest go first
+MAX_PORTS = 2000  # ports; the oldest go first
 
 
 class KnownPorts(NamedTuple):
@@ -54,7 +54,7 @@ def remember(port: str, name: str, is_used: bool = True) -> None:
             }
             name_by_port = {port: name, **other_names}
             last_port = port if is_used else known_ports.last_port
-            fields = {"last": last_port, "ports": list(name_by_port.items())[:MOST_PORTS]}
+            fields = {"last": last_port, "ports": list(name_by_port.items())[:MAX_PORTS]}
             files.replace(path, json.dumps(fields).encode())
 
 

@@ -16,7 +16,7 @@ from typing import NamedTuple
 # Settings of a WiFi network are sent in several frames: its name, its password, and the action.
 NETWORK_BYTES, PASSWORD_BYTES = 32, 63
 # Shortest password of WPA2; longest name, or part of a password.
-LEAST_PASSWORD, WIFI_TEXT_BYTES = 8, 32
+MIN_PASSWORD, WIFI_TEXT_BYTES = 8, 32
 # Bytes of a class name (a to z, 0 to 9, -), and of an address with its port.
 CLASS_BYTES, BROKER_PLACE_BYTES = 16, 6
 BROKER_NAME_BYTES, TRUST_BYTES = 96, 2048  # bytes of a computer's name, and of a certificate in DER
@@ -95,7 +95,7 @@ CHALLENGE_BYTES = 8
 TAG_BYTES = 8
 PLACE_BYTES = 6  # bytes of a PING reply: the program's place (16 bits) and its checksum
 NOISE_BYTES = 2  # noise of both discs
-MOST_BREAKPOINTS = 4
+MAX_BREAKPOINTS = 4
 VARIABLE_BYTES, TASK_BYTES = 4, 7  # bytes of one variable, and of one task
 VARIABLES_BYTES = 13 * VARIABLE_BYTES  # variables in one frame
 ALL_TASKS_BYTES = 5 * TASK_BYTES  # all tasks; the main one is last
@@ -176,7 +176,7 @@ FEATURES = (
 # The state of a remote control: a bit for each held key, and the pad in percent to the right and
 # up. It expires after this time, so that an old state of a client that has left moves nothing.
 REMOTE_KEYS = ("UP", "DOWN", "LEFT", "RIGHT", "A", "B")
-MOST_PAD = 100
+MAX_PAD = 100
 HOLD_MS = 500
 # The keys of a robot: `kind` of CLAIM and AUTHENTICATE.
 KEYS = (
@@ -192,7 +192,7 @@ KEYS = (
 
 # The trim of the motors: their wiring, how much one is weakened, and the least power that moves.
 EXCHANGED, LEFT_REVERSED, RIGHT_REVERSED = 0x01, 0x02, 0x04
-MOST_BALANCE, MOST_LEAST = 40, 40  # percent
+MAX_BALANCE, MAX_LEAST = 40, 40  # percent
 WHEELS = (
     (EXCHANGED, "EXCHANGED", "The left motor is where the right one should be."),
     (LEFT_REVERSED, "LEFT_REVERSED", "The left wheel turns the wrong way round."),
@@ -306,7 +306,7 @@ MESSAGES = (
     _message(23, "ABORT", True, "", "", "Drops the program that was begun."),
     _message(24, "KEYS", True, "keys:u8 x:i8 y:i8", _PULSE,
              "Sends the state of a remote control: a bit for each key that is held, and the position of its stick. Also a heartbeat."),
-    _message(25, "BREAK", True, f"places:rest=0..{2 * MOST_BREAKPOINTS}", "",
+    _message(25, "BREAK", True, f"places:rest=0..{2 * MAX_BREAKPOINTS}", "",
              "Sets all places where a program halts, as 16-bit offsets: in the running program or, if none is running, in the one that the robot holds."),
     _message(26, "RESUME", True, "how:u8", "run:u8 was_halted:u8",
              "Continues a halted program; `how` says how far."),

@@ -15,7 +15,7 @@ from typing import NamedTuple
 from tiniscript.base import files
 
 FILE_BYTES = 1_000_000
-MOST_PLACES = 2000  # places, and robots; the oldest go first
+MAX_PLACES = 2000  # places, and robots; the oldest go first
 FILE_MODE = 0o600  # readable by this user only
 
 
@@ -69,8 +69,8 @@ def _change(path: Path, change: Callable[[MetRobots], MetRobots]) -> None:
         fields = {
             "places": {
                 place: f"{robot:08x}"
-                for place, robot in list(met_robots.id_by_place.items())[-MOST_PLACES:]
+                for place, robot in list(met_robots.id_by_place.items())[-MAX_PLACES:]
             },
-            "accepted": [f"{robot:08x}" for robot in met_robots.accepted_ids[-MOST_PLACES:]],
+            "accepted": [f"{robot:08x}" for robot in met_robots.accepted_ids[-MAX_PLACES:]],
         }
         files.replace(path, json.dumps(fields, indent=1).encode() + b"\n", FILE_MODE)

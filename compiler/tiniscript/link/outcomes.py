@@ -139,7 +139,7 @@ class ConnectionLost(Exception):
         self.is_server = is_server
 
 
-MOST_EVENTS = 500  # events
+MAX_EVENTS = 500  # events
 DROPPABLE_EVENTS = ("SHOW", "TEXT", "ECHO", "READING")  # the others report the robot's actions
 
 TimedEvent = tuple[int, Event]  # arrival time (ms), event
@@ -162,7 +162,7 @@ class Backlog:
             if timed_event[1].name == "PLACE":  # only the newest one matters
                 self._events = deque(one for one in self._events if one[1].name != "PLACE")
             self._events.append(timed_event)
-            if len(self._events) > MOST_EVENTS:
+            if len(self._events) > MAX_EVENTS:
                 self._drop_event()
 
     def take_event(self) -> TimedEvent:

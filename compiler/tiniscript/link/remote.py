@@ -11,7 +11,7 @@ from collections.abc import Iterable
 from typing import Any, NamedTuple
 
 from tiniscript.link.connection import PendingRequest
-from tiniscript.link.messages import HOLD_MS, MOST_PAD, REMOTE, REMOTE_KEYS
+from tiniscript.link.messages import HOLD_MS, MAX_PAD, REMOTE, REMOTE_KEYS
 from tiniscript.link.outcomes import CANCELLED, LOST
 from tiniscript.link.payloads import EmptyReply
 from tiniscript.link.requests import OK, DeviceInfo, Reply
@@ -19,7 +19,7 @@ from tiniscript.link.requests import OK, DeviceInfo, Reply
 REPEAT_MS = 200  # interval at which held keys are repeated
 GAP_MS = 30  # between two words while one is unanswered: a frame and its answer at 9600 baud
 RESEND_MS = 100  # time after which an unanswered message is sent again
-MOST_UNANSWERED = 3  # words that may be unanswered: on a slow line no more of them queue up
+MAX_UNANSWERED = 3  # words that may be unanswered: on a slow line no more of them queue up
 _LONG_AGO_MS = -1_000_000
 
 
@@ -32,7 +32,7 @@ class RemoteState(NamedTuple):
 
     @property
     def is_sound(self) -> bool:
-        is_pad_sound = all(-MOST_PAD <= percent <= MOST_PAD for percent in (self.x, self.y))
+        is_pad_sound = all(-MAX_PAD <= percent <= MAX_PAD for percent in (self.x, self.y))
         return 0 <= self.keys < 1 << len(REMOTE_KEYS) and is_pad_sound
 
 
@@ -112,15 +112,15 @@ class RemoteControl:
         if combined_state != self._sent_state:
             gap_ms = (
                 REPEAT_MS
-                if self._unanswered_count == MOST_UNANSWERED
+                if self._unanswered_count == MAX_UNANSWERED
                 else GAP_MS
                 if self._unanswered_count
                 else 0
             )
             times.append(self._sent_ms + gap_ms)
-        elif 0 < self._unanswered_count < MOST_UNANSWERED:
+        elif 0 < self._unanswered_count < MAX_UNANSWERED:
             times.append(self._sent_ms + RESEND_MS)
-        elif combined_state != NOTHING_PRESSED or self._unanswered_count == MOST_UNANSWERED:
+        elif combined_state != NOTHING_PRESSED or self._unanswered_count == MAX_UNANSWERED:
             times.append(self._sent_ms + REPEAT_MS)
         return min(times, default=None)
 

@@ -8,9 +8,9 @@ milliseconds. Knows no frame and no clock.
 from __future__ import annotations
 
 ROUND_MS = 120  # round trip through two radios and a robot, without the bytes
-MOST_LEARNT_MS = 3000  # a learnt timer may be wrong after a suspension
-MOST_DOUBLED_MS = 1000  # doubling never exceeds this limit
-MOST_RETRY_MS = 400  # the longest timer for a robot that has to hear us regularly
+MAX_LEARNT_MS = 3000  # a learnt timer may be wrong after a suspension
+MAX_DOUBLED_MS = 1000  # doubling never exceeds this limit
+MAX_RETRY_MS = 400  # the longest timer for a robot that has to hear us regularly
 _MEAN_WEIGHT, _VARIATION_WEIGHT, _VARIATION_COUNT = 1 / 8, 1 / 4, 4  # alpha, beta and K of the RFC
 
 
@@ -66,7 +66,7 @@ class RoundTrips:
         learnt_ms = ROUND_MS + byte_count * (self._byte_ms or 0)
         if self._mean_ms is not None:
             learnt_ms = max(learnt_ms, self._mean_ms + _VARIATION_COUNT * self._variation_ms)
-        needed_ms = max(line_ms, min(int(learnt_ms), MOST_LEARNT_MS))
+        needed_ms = max(line_ms, min(int(learnt_ms), MAX_LEARNT_MS))
         doubled_ms = needed_ms << min(self._doublings, 10)
-        wait_ms = min(doubled_ms, max(MOST_DOUBLED_MS, needed_ms))
-        return max(line_ms, min(wait_ms, MOST_RETRY_MS)) if retries_soon else wait_ms
+        wait_ms = min(doubled_ms, max(MAX_DOUBLED_MS, needed_ms))
+        return max(line_ms, min(wait_ms, MAX_RETRY_MS)) if retries_soon else wait_ms

@@ -16,7 +16,7 @@ from functools import partial
 from itertools import takewhile
 from typing import Any, NamedTuple, TypeVar
 
-from tiniscript.bytecode.image import LEAST_ISA
+from tiniscript.bytecode.image import MIN_ISA
 from tiniscript.link.authority import NOT_OWNER, KeyRing
 from tiniscript.link.connection import EXCHANGE_TIMEOUT_MS, PendingRequest, Requester
 from tiniscript.link.frames import Frame, decode_frame
@@ -97,7 +97,7 @@ IDLE_HEARTBEAT_MS = 1000  # between two frames otherwise
 SILENT_MS = DEAD_MAN_MS + 200  # time after a lost link in which only stops are sent
 DEAF_MS = 3000  # a heartbeat without an answer for this time means that the link is lost
 PLACE_QUESTION = b"\1"  # question of a PING for the program's place
-MOST_REAUTHENTICATIONS = 5  # for one request
+MAX_REAUTHENTICATIONS = 5  # for one request
 _STALE_STATUS = STATUSES["STALE"]
 _WAITING_STATUSES = (
     STATUSES["BUSY"],
@@ -172,7 +172,7 @@ class Session(Requester):
         nonce: int,
         baud: int = 9600,
         kit: int = 0,
-        isa: tuple[int, int] = LEAST_ISA,
+        isa: tuple[int, int] = MIN_ISA,
         keys: KeyRing | None = None,
         place: str = "",
     ) -> None:
@@ -531,7 +531,7 @@ class Session(Requester):
         pending_exchange.reauthentication_count += 1
         self._transmission = Transmission(self._round_trips)
         if (
-            pending_exchange.reauthentication_count > MOST_REAUTHENTICATIONS
+            pending_exchange.reauthentication_count > MAX_REAUTHENTICATIONS
         ):  # its exchange is notified, and may repeat it
             pending_exchange.exchange.close()
             pending_exchange.outcome = Reply(NOT_OWNER)

@@ -145,13 +145,13 @@ class Transmission:
 
 
 WIRE_BYTES = 4  # extra bytes of a frame on the wire: COBS and the zeros
-MOST_QUEUED_MS = 200  # longest wait of a stop, in terms of the port's time
+MAX_QUEUED_MS = 200  # longest wait of a stop, in terms of the port's time
 SLOW_MS = 1000  # extra time for a slow line after its port
 REPLY_BYTES = 32  # bytes of a DATA reply on the wire, at most
 FRAME_BYTES = 24  # bytes of DATA on the wire beside its piece, at most
-LEAST_BYTES = 8  # shortest piece, for lines that lose longer ones
+MIN_BYTES = 8  # shortest piece, for lines that lose longer ones
 MORE_BYTES = 8  # bytes by which the next piece grows after a success
-MOST_REMEMBERED_PIECES = 64  # pieces that were sent last: their answers may be late
+MAX_REMEMBERED_PIECES = 64  # pieces that were sent last: their answers may be late
 _DATA = BY_NAME["DATA"]
 
 
@@ -178,7 +178,7 @@ class Window(Transmission):
         """`next_number` returns the number of each frame: another one each time."""
         super().__init__(round_trips)
         self._data = pieces.data
-        queued_bytes = baud * MOST_QUEUED_MS // 10_000  # bytes
+        queued_bytes = baud * MAX_QUEUED_MS // 10_000  # bytes
         small_piece_bytes = payload_bytes(SMALL_FRAME) - OFFSET_BYTES
         self._longest_piece_bytes = self._piece_bytes = min(
             pieces.piece_bytes, max(small_piece_bytes, queued_bytes // 2 - FRAME_BYTES)
@@ -192,7 +192,7 @@ class Window(Transmission):
         self._next_offset = 0  # the offset that the robot expects next
         self._sent_offset = 0  # offset of the byte after the last one that was sent
         self._sent_pieces: deque[SentPiece] = deque()
-        self._lost_pieces: deque[SentPiece] = deque(maxlen=MOST_REMEMBERED_PIECES)  # taken for lost
+        self._lost_pieces: deque[SentPiece] = deque(maxlen=MAX_REMEMBERED_PIECES)  # taken for lost
         self._lost_ms = 0  # when data under way counts as lost
         self._is_repeated = False
         self._is_over = False
@@ -282,7 +282,7 @@ class Window(Transmission):
         self.tries += 1
         if self.tries > 1:
             self._piece_bytes = max(
-                min(LEAST_BYTES, self._longest_piece_bytes), self._piece_bytes // 2
+                min(MIN_BYTES, self._longest_piece_bytes), self._piece_bytes // 2
             )
 
     def _next_bytes(self) -> int:
@@ -296,7 +296,7 @@ class Window(Transmission):
             - OFFSET_BYTES
         )
         if not self._sent_pieces:
-            return min(length, max(room, LEAST_BYTES))
+            return min(length, max(room, MIN_BYTES))
         return length if len(self._sent_pieces) < self._allowed_count and room >= length else 0
 
     def _frame(self, offset: int, length: int) -> Frame:

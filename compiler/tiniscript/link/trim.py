@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 from tiniscript.link.messages import EXCHANGED, LEFT_REVERSED, PACE_BYTES, RIGHT_REVERSED
 from tiniscript.link.payloads import TrimReply
 
-MOST_PACE = 655.35  # cm or degrees in a second, at 80 %
+MAX_PACE = 655.35  # cm or degrees in a second, at 80 %
 
 
 class Pace(NamedTuple):

@@ -9,7 +9,7 @@ from __future__ import annotations
 from contextlib import suppress
 from typing import Any
 
-MOST_BYTES = 1024  # most bytes of one answer, in case the sender never stops
+MAX_BYTES = 1024  # most bytes of one answer, in case the sender never stops
 QUIET_MS = 60  # silence that ends an answer
 RESET_MS = 100  # time for which the lines hold a board in reset
 
@@ -30,7 +30,7 @@ class Wire:
         """Wait `wait_ms` for a byte at most; return it and the following bytes until a silence."""
         data = b""
         limit_ms = wait_ms
-        while len(data) < MOST_BYTES:
+        while len(data) < MAX_BYTES:
             piece = self._read(limit_ms)
             if not piece:
                 break

@@ -13,13 +13,14 @@ from tiniscript.base.kit import REMOTE
 from tiniscript.base.words import BLOCK_ENDS
 from tiniscript.diagnostics import codes
 from tiniscript.recovery.lines import ANY_END, Reading
-from tiniscript.recovery.meanings import WORD_OF_END, Lexeme, make_token, texts
+from tiniscript.recovery.meanings import Lexeme, make_token, texts
 from tiniscript.recovery.rewrites import negate
+from tiniscript.syntax.blocks import WORD_OF_END
 from tiniscript.syntax.outline import Item
 
 _ASKING_WORDS = ("IF", "WHILE", "WHEN")
 _REMOTE_NAMES = frozenset(device.name for device in REMOTE)
-MOST_ITEMS_AFTER_ELSE = 200  # the number of items after an ELSE whose ends are counted
+MAX_ITEMS_AFTER_ELSE = 200  # the number of items after an ELSE whose ends are counted
 
 
 class Line(NamedTuple):
@@ -267,7 +268,7 @@ class Matching:
         outer_count = sum(block.word == "IF" for block in self.open_blocks[:-1])
         items_after = [
             item
-            for _, item in self.items[self.item_index + 1 : self.item_index + MOST_ITEMS_AFTER_ELSE]
+            for _, item in self.items[self.item_index + 1 : self.item_index + MAX_ITEMS_AFTER_ELSE]
         ]
         end_count = sum(
             item.kind == "end" and item.word in (ANY_END, "ENDIF", "END_IF") for item in items_after

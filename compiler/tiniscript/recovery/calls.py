@@ -29,7 +29,7 @@ from tiniscript.recovery.meanings import (
     ASKING_WORDS,
     CALL_WORDS,
     LONG_TIME_S,
-    MOST_POWER,
+    MAX_POWER,
     NEAR_COST,
     Names,
     homophone_of,
@@ -49,7 +49,7 @@ _DEF = re.compile(r"(?i)\bDEF\s+(\w+)")
 _SPACED_POINT = re.compile(r"(?<=\d)[ \t]*\.[ \t]+(?=[-\d.])")
 _PERCENT_AT_END = re.compile(r"[ \t]*%$")
 _TIME_WITH_UNIT = re.compile(r"(\d+(?:\.\d+)?)[ \t]*([^\W\d]*)")
-_MOST_ADDED_LETTERS = 3  # letters: a phone may have added some to one
+_MAX_ADDED_LETTERS = 3  # letters: a phone may have added some to one
 _UNIT_PATTERN = rf"(?P<unit>{'|'.join(EXTENTS)})"
 _UNIT_BEFORE_VALUE = re.compile(rf"(?i){_UNIT_PATTERN}[ \t]+(?P<value>[\w.]+)")
 _STORED_WITH_UNIT = re.compile(rf"(?i)(\w+)[ \t]*=[ \t]*(-?[\d.]+)[ \t]*({'|'.join(EXTENTS)})")
@@ -236,7 +236,7 @@ def _seconds_text(value: str) -> str:
 
 def _are_powers(values: Sequence[str]) -> bool:
     return all(
-        abs(float(value)) <= MOST_POWER if _NUMBER.fullmatch(value) else value.upper() not in WORDS
+        abs(float(value)) <= MAX_POWER if _NUMBER.fullmatch(value) else value.upper() not in WORDS
         for value in values
     )
 
@@ -267,7 +267,7 @@ def likely_word(word: str, text: str) -> str:
     numbers = [number for number in map(_NUMBER.match, values) if number]
     if not values or len(numbers) != len(values):
         return ""
-    is_frequency = len(values) > 1 and float(numbers[1][0]) > MOST_POWER
+    is_frequency = len(values) > 1 and float(numbers[1][0]) > MAX_POWER
     expansions, similar_word = (
         expand_short(word),
         "" if lexicon_concept(word) else homophone_of(word) or "",
@@ -279,7 +279,7 @@ def likely_word(word: str, text: str) -> str:
     elif len(expansions) == 1:
         guessed_word = expansions[0]
     else:
-        guessed_word = word[:1] if len(word) <= _MOST_ADDED_LETTERS else ""
+        guessed_word = word[:1] if len(word) <= _MAX_ADDED_LETTERS else ""
     return (
         guessed_word
         if guessed_word in WORDS and len(WORDS[guessed_word].arguments) == len(values)

@@ -23,7 +23,7 @@ _CONSEQUENCES: dict[Code, tuple[Code, ...]] = {
 _WORD_CODES = (codes.UNKNOWN_WORD, codes.TURN_WITHOUT_DIRECTION)
 _NAME_CODES = (codes.UNKNOWN_NAME, codes.USED_BEFORE_SET)
 _UNTAUGHT_CODES = (codes.UNKNOWN_WORD, codes.UNTAUGHT)
-_MOST_UNITS = 30  # most units that are examined, because each goes through its row
+_MAX_UNITS = 30  # most units that are examined, because each goes through its row
 
 
 def without_consequences(diagnostics: Sequence[Diagnostic], source: Source) -> list[Diagnostic]:
@@ -113,7 +113,7 @@ def _units_of_an_unknown_word(
         diagnostic.span.start for diagnostic in diagnostics if diagnostic.code in _WORD_CODES
     ]
     units = [diagnostic for diagnostic in diagnostics if diagnostic.code is codes.UNIT_PLACE]
-    for diagnostic in units[:_MOST_UNITS] if unknown_offsets else ():
+    for diagnostic in units[:_MAX_UNITS] if unknown_offsets else ():
         start, end = instruction_at(diagnostic.span, source)
         if any(start <= offset < end for offset in unknown_offsets):
             yield diagnostic

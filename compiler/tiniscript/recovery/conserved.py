@@ -37,7 +37,6 @@ from tiniscript.recovery.meanings import (
     FULL_TURN,
     NEAR_CM,
     NEAR_COST,
-    WORD_OF_END,
     Lexeme,
     Names,
     brackets_end,
@@ -49,6 +48,7 @@ from tiniscript.recovery.meanings import (
 from tiniscript.recovery.notes import note_edits
 from tiniscript.recovery.rewrites import join_one_name
 from tiniscript.recovery.writing import PLAIN_SIGNS, instruction_at, split_note
+from tiniscript.syntax.blocks import WORD_OF_END
 from tiniscript.syntax.lexer import NUMBER, WORD
 from tiniscript.syntax.operators import ARITHMETIC_SIGNS
 
@@ -96,7 +96,7 @@ _GROUP_SEPARATORS = re.compile(r"[.,:;'´`·_ ]*")
 _DIGITS_OF_LETTERS = str.maketrans("oOlI", "0011")
 _NUMBER_WITH_UNIT = re.compile(r"[\d.]+\s*([^\W\d]+|[%°])")
 _SEPARATORS = ";\n"
-_MOST_NUMBER_PARTS = 3  # parts of a number
+_MAX_NUMBER_PARTS = 3  # parts of a number
 _GROUP_DIGITS = 3  # digits of the last part of `1,000`
 # The removable parts of a text, and the codes whose messages name their effect.
 _COUNTED_TOKEN = re.compile(r"\d[\d.]*|[^\W\d]\w*|[<>≤≥≠]=?|[=!]=")
@@ -125,9 +125,9 @@ class Amount(NamedTuple):
     line: int
 
 
-MOST_EXAMINED_LOSSES = 40  # most losses examined in one text, and most characters examined in each
-MOST_EXAMINED_CHARACTERS = 100_000
-MOST_LAYERS = 8
+MAX_EXAMINED_LOSSES = 40  # most losses examined in one text, and most characters examined in each
+MAX_EXAMINED_CHARACTERS = 100_000
+MAX_LAYERS = 8
 
 
 class Difference(NamedTuple):
@@ -238,7 +238,7 @@ def _losses(diagnostics: Sequence[Diagnostic], text: str, kit: Kit) -> list[Diff
     """
     edits = [edits_of(diagnostic) or () for diagnostic in diagnostics]
     changing_keys = [k for k, edits_of_one in enumerate(edits) if edits_of_one]
-    looks_left = min(MOST_EXAMINED_LOSSES, MOST_EXAMINED_CHARACTERS // (len(text) + 1))
+    looks_left = min(MAX_EXAMINED_LOSSES, MAX_EXAMINED_CHARACTERS // (len(text) + 1))
     differences = [NO_DIFFERENCE] * len(edits)
     groups = deque([k] for k in changing_keys)
     if len(groups) > looks_left:
@@ -265,17 +265,17 @@ def _losses(diagnostics: Sequence[Diagnostic], text: str, kit: Kit) -> list[Diff
 
 def _layers(edits: Mapping[int, Sequence[Edit]]) -> list[list[int]]:
     """Return groups of changes that do not touch, by their keys, and at last those in no group."""
-    layers: list[list[int]] = [[] for _ in range(MOST_LAYERS + 1)]
-    spans_by_layer: list[list[Span]] = [[] for _ in range(MOST_LAYERS)]
+    layers: list[list[int]] = [[] for _ in range(MAX_LAYERS + 1)]
+    spans_by_layer: list[list[Span]] = [[] for _ in range(MAX_LAYERS)]
     for k, edits_of_one in edits.items():
         free_layers = (
             layer_index
             for layer_index, spans in enumerate(spans_by_layer)
             if not any(_overlaps(edit, spans) for edit in edits_of_one)
         )
-        layer_index = next(free_layers, MOST_LAYERS)
+        layer_index = next(free_layers, MAX_LAYERS)
         layers[layer_index].append(k)
-        for edit in edits_of_one if layer_index < MOST_LAYERS else ():
+        for edit in edits_of_one if layer_index < MAX_LAYERS else ():
             insort(spans_by_layer[layer_index], edit.span)
     return [layer for layer in layers[:-1] if layer] + layers[-1:]
 
@@ -945,7 +945,7 @@ def _digit_runs(text: str) -> Iterator[tuple[float, list[float]]]:
     """Yield the values of digits as one number, and as several: `2,5`, `8 0`, `8O`, `1:30`."""
     pieces = [*_DIGITS.finditer(text)]
     for start in range(len(pieces)):
-        for end in range(start, min(start + _MOST_NUMBER_PARTS, len(pieces))):
+        for end in range(start, min(start + _MAX_NUMBER_PARTS, len(pieces))):
             digit_matches = pieces[start : end + 1]
             gaps = [text[a.end() : b.start()] for a, b in pairwise(digit_matches)]
             if not all(_GROUP_SEPARATORS.fullmatch(gap) for gap in gaps):

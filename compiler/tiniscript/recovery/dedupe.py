@@ -10,7 +10,7 @@ from tiniscript.diagnostics.codes import Code, Diagnostic, Repair
 from tiniscript.recovery.consequences import without_consequences
 from tiniscript.syntax.lexer import QUOTES
 
-MOST_EXAMPLE_CALLS = 6  # calls that an example has
+MAX_EXAMPLE_CALLS = 6  # calls that an example has
 # Messages given once for the same values, some or all of them: with the lines of the others, and
 # their repairs, or without.
 _GAPS_WITH_LINES: dict[Code, tuple[str, ...] | None] = {
@@ -108,7 +108,7 @@ def _merge_diagnostics(group: Sequence[Diagnostic], source: Source) -> Diagnosti
         words = ", ".join(dict.fromkeys(diagnostic.values["word"] for diagnostic in group))
         calls = (
             diagnostic.values.get("fix") or diagnostic.values["example"]
-            for diagnostic in group[:MOST_EXAMPLE_CALLS]
+            for diagnostic in group[:MAX_EXAMPLE_CALLS]
         )
         values = {**first_diagnostic.values, "words": words, "fix": "", "example": "; ".join(calls)}
         return first_diagnostic._replace(values=values, place=None, repair=None)

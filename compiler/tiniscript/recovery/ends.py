@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from tiniscript.base.words import BLOCK_ENDS
-from tiniscript.recovery.meanings import WORD_OF_END, Lexeme, texts
+from tiniscript.recovery.meanings import Lexeme, texts
 from tiniscript.recovery.slips import instructions
 from tiniscript.recovery.writing import format_line
+from tiniscript.syntax.blocks import WORD_OF_END
 
-_MOST_CANDIDATES = 4  # the last of these places is always valid
+_MAX_CANDIDATES = 4  # the last of these places is always valid
 _ARMS = ("ELSE", "ELSEIF")
 _ENDLESS_CONDITIONS = (("(", "FOREVER", ")"), ("(", "TRUE", ")"))
 
@@ -42,8 +43,8 @@ def candidates_text(candidates: Sequence[str]) -> str:
     if len(candidates) < 2:
         return ""
     shown_lines = (
-        [*candidates[: _MOST_CANDIDATES - 1], "...", candidates[-1]]
-        if len(candidates) > _MOST_CANDIDATES
+        [*candidates[: _MAX_CANDIDATES - 1], "...", candidates[-1]]
+        if len(candidates) > _MAX_CANDIDATES
         else candidates
     )
     return ", ".join(shown_lines)

@@ -25,7 +25,6 @@ from tiniscript.recovery.ends import (
 )
 from tiniscript.recovery.lines import BRACES, Step
 from tiniscript.recovery.meanings import (
-    WORD_OF_END,
     Lexeme,
     certain_concept,
     lexemes,
@@ -48,9 +47,10 @@ from tiniscript.recovery.writing import (
     spoken_signs,
     tokens_of,
 )
+from tiniscript.syntax.blocks import WORD_OF_END
 from tiniscript.syntax.lexer import NUMBER, WORD
 
-_MOST_SIGN_NAMES = 3  # names of signs that a message shows
+_MAX_SIGN_NAMES = 3  # names of signs that a message shows
 _CODES_OF_EACH_WORD = (codes.BAD_NAME, codes.EMPTY_BRACKETS, codes.NAME_WITH_SPACE)
 # Codes of what belongs to the beginning of its block, where something is wrong with that, too.
 _BLOCK_CODES = (codes.NEVER_ENDS, codes.END_ALONE, codes.END_SPLIT, codes.BRACES,
@@ -414,7 +414,7 @@ class _Explainer:
             code = codes.OTHER_SIGN
             details: SlipDetails | UnendedBlock = SlipDetails(
                 slips.slip_of(change, code, step),
-                spoken=", ".join(found_spoken_signs[:_MOST_SIGN_NAMES]),
+                spoken=", ".join(found_spoken_signs[:_MAX_SIGN_NAMES]),
             )
         else:
             details = (

@@ -20,7 +20,7 @@ from tiniscript.syntax.lexer import NEWLINE, NUMBER, WORD, Token, scan
 _INSTRUCTION_ENDS = (";", NEWLINE, "|", "end")
 _DEF_ENDS = ("END_DEF", "ENDDEF")
 _RESULT_NAME = "RESULT"
-_MOST_CHARACTERS = 4_000  # characters of a text that is looked at
+_MAX_CHARACTERS = 4_000  # characters of a text that is looked at
 _SUM_SIGNS = {*"+-*/%"}
 _KINDS_IN_SUMS = {WORD, NUMBER, "(", ")", *_SUM_SIGNS}
 _YES_NO_WORDS = ("AND", "OR", "NOT")
@@ -29,7 +29,7 @@ _YES_NO_WORDS = ("AND", "OR", "NOT")
 def find_returned_values(source: Source) -> tuple[list[Diagnostic], list[Edit]]:
     """Return the diagnostics for DEFs that return a value, and edits for further reading."""
     text = source.text
-    if "DEF" not in text.upper() or len(text) > _MOST_CHARACTERS:
+    if "DEF" not in text.upper() or len(text) > _MAX_CHARACTERS:
         return [], []
     tokens = scan(text).tokens
     names = {

@@ -15,7 +15,6 @@ from tiniscript.recovery import lines, rewrites
 from tiniscript.recovery.meanings import (
     CALL_WORDS,
     NEAR_CM,
-    WORD_OF_END,
     Lexeme,
     Names,
     brackets_end,
@@ -25,10 +24,11 @@ from tiniscript.recovery.meanings import (
 from tiniscript.recovery.slots import FilledCall, fill_call
 from tiniscript.recovery.worded import condition_values
 from tiniscript.recovery.writing import format_line
+from tiniscript.syntax.blocks import WORD_OF_END
 from tiniscript.syntax.lexer import NUMBER
 from tiniscript.syntax.operators import COMPARISONS
 
-MOST_WORDS = 40  # words of a sentence
+MAX_WORDS = 40  # words of a sentence
 _SIDEWAYS_MOVES = ("L", "R", "B")  # DISTANCE looks ahead
 _TURNS = _SIDEWAYS_MOVES[:2]
 
@@ -60,7 +60,7 @@ def samples_text(spoken_instructions: Sequence[SpokenInstruction]) -> str:
 def spoken_instructions(words: Sequence[Lexeme], names: Names) -> list[SpokenInstruction]:
     """Return the instructions of a sentence, in turn."""
     found_instructions: list[SpokenInstruction] = []
-    if len(words) > MOST_WORDS:
+    if len(words) > MAX_WORDS:
         return []
     words = [
         word
@@ -270,7 +270,7 @@ def block(tokens: Sequence[Lexeme], names: Names, goes_on: bool) -> str:
     `goes_on`: it continues further down.
     """
     word = names.find_meaning(tokens[0].text)
-    if word not in ("IF", "WHEN", "WHILE", "LOOP") or len(tokens) > MOST_WORDS:
+    if word not in ("IF", "WHEN", "WHILE", "LOOP") or len(tokens) > MAX_WORDS:
         return ""
     is_when = bool(lexicon_meaning(tokens[0].text, "whenever"))
     tokens = [tokens[0], *_join_words(tokens[1:], names)]  # `si no hay` is no ELSE

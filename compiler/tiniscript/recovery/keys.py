@@ -19,8 +19,9 @@ from tiniscript.base.source import Edit, Source, Span
 from tiniscript.base.words import BLOCK_ENDS, WORDS, lexicon, lexicon_concept, lexicon_meaning
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic, Repair
-from tiniscript.recovery.meanings import ASKING_WORDS, WORD_OF_END, Names, lexemes, plain, words_of
+from tiniscript.recovery.meanings import ASKING_WORDS, Names, lexemes, plain, words_of
 from tiniscript.recovery.writing import split_note
+from tiniscript.syntax.blocks import WORD_OF_END
 
 KEYS = tuple(device.name for device in REMOTE if device.is_yes_no)
 # Directions meant by an arrow alone.

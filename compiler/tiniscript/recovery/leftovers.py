@@ -15,8 +15,9 @@ from tiniscript.base.words import BLOCK_ENDS, WORDS, lexicon, lexicon_concept, l
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic, Repair
 from tiniscript.recovery.calls import likely_word
-from tiniscript.recovery.meanings import ASKING_WORDS, WORD_OF_END, Lexeme, Names, lexemes, plain
+from tiniscript.recovery.meanings import ASKING_WORDS, Lexeme, Names, lexemes, plain
 from tiniscript.recovery.writing import split_note
+from tiniscript.syntax.blocks import WORD_OF_END
 from tiniscript.syntax.lexer import WORD
 
 _SETUP_ANYWHERE = re.compile(r"(?i)(?P<before>\)|\w)?[ \t]*\b(?P<setup>S[IB][ \t]*\|)(?!\|)[ \t]*")
@@ -25,7 +26,7 @@ _NAMED_TASK = re.compile(r"\bTASK[ \t]+([A-Z]\w*)")
 _INSTRUCTION = re.compile(r"[^;{}|]+")
 _CALL = re.compile(r"\s*(\w+)\s*(?:\([^()]*\))?[\s.]*")
 _HEADER_WORDS = frozenset((*BLOCK_ENDS, *ASKING_WORDS, "ELSE", "FOREVER"))
-_MOST_LEFTOVER_WORDS = 3  # words
+_MAX_LEFTOVER_WORDS = 3  # words
 _WORDS_ALONE = frozenset(("BREAK", "S", "START", "STOP", *WORD_OF_END))
 _EMPTY_WORDS = frozenset((
     "filler", "small", "please", "the", "of", "to", "in", "is", "soon", "there", "this", "so",
@@ -111,7 +112,7 @@ def _filler_diagnostics(
 ) -> Iterator[Diagnostic]:
     for match in _INSTRUCTION.finditer(body):
         tokens = lexemes(match[0])
-        if not 1 < len(tokens) <= 1 + _MOST_LEFTOVER_WORDS or tokens[0].text not in _WORDS_ALONE:
+        if not 1 < len(tokens) <= 1 + _MAX_LEFTOVER_WORDS or tokens[0].text not in _WORDS_ALONE:
             continue
         if all(token.text in tasks or _is_filler(token, names) for token in tokens[1:]):
             end = start + match.start() + len(match[0].rstrip())

@@ -31,26 +31,26 @@ from tiniscript.recovery.meanings import (
     make_token,
     texts,
 )
-from tiniscript.recovery.slots import LEAST_MILLISECONDS, fill_call
+from tiniscript.recovery.slots import MIN_MILLISECONDS, fill_call
 from tiniscript.syntax.lexer import DEGREES, NUMBER, WORD
 from tiniscript.syntax.operators import SIGNS
 from tiniscript.syntax.outline import Failure, Item, outline
 
-MOST_STATES = 80  # most states of a line that are explored
-MOST_SLIP_STATES = 40
-MOST_QUICK_STATES = 8
+MAX_STATES = 80  # most states of a line that are explored
+MAX_SLIP_STATES = 40
+MAX_QUICK_STATES = 8
 RIVAL_MARGIN = 1.05  # factor within which a rival's cost is close to the cheapest reading
 SURE_MARGIN = 0.15  # difference in cost that makes the cheapest reading certain
 SLIP_MARGIN = 0.3
-MOST_RIVALS = 4
-MOST_TOKENS = 300  # tokens of a line
+MAX_RIVALS = 4
+MAX_TOKENS = 300  # tokens of a line
 ANY_END = "?"  # the word of an end that names no block: END, FIN
 BRACES = ("{", "}")
-MOST_TOKENS_WITH_SLIPS = 80
-_MOST_FIRST_STEPS = 30
+MAX_TOKENS_WITH_SLIPS = 80
+_MAX_FIRST_STEPS = 30
 _CALCULATION_SIGNS = SIGNS | {"°"}  # without the degree sign, another number would be meant
 _NEEDLESS_BRACKETS = re.compile(r"(?<=[(,=<>+*/-] )\( ([^() ]+) \)|\( (\( [^()]* \)) \)")
-_MOST_PLAIN_DIGITS = 4
+_MAX_PLAIN_DIGITS = 4
 _WORDS_AT_END = ("LOOP", "IF", "WHILE", "DEF", "ELSEIF", "UNTIL")
 _EDGE_WORDS = {word for word in WORDS if WORDS[word].role.belongs_to_blocks} | {
     ";",
@@ -116,7 +116,7 @@ def _normalize(token: Lexeme) -> tuple[str, str]:
     text = token.text
     if text in DEGREES:
         return (WORD, "DEG")
-    is_plain = text.isdecimal() and text[0] != "0" and len(text) <= _MOST_PLAIN_DIGITS
+    is_plain = text.isdecimal() and text[0] != "0" and len(text) <= _MAX_PLAIN_DIGITS
     return token.kind, "1" if is_plain else text
 
 
@@ -198,16 +198,16 @@ class _Search:
     def read(self, tokens: list[Lexeme], is_quick: bool) -> list[Reading]:
         first_reading = self.apply_first_rewrites(Reading(0, tokens, (), True, False))
         readings = self.search(
-            first_reading, MOST_QUICK_STATES if is_quick else MOST_STATES, self.rewrite
+            first_reading, MAX_QUICK_STATES if is_quick else MAX_STATES, self.rewrite
         )
         has_word_or_number = any(token.kind in (WORD, NUMBER) for token in tokens)
         if (
             not is_quick
             and not readings
             and has_word_or_number
-            and len(tokens) < MOST_TOKENS_WITH_SLIPS
+            and len(tokens) < MAX_TOKENS_WITH_SLIPS
         ):
-            found_readings = self.search(first_reading, MOST_SLIP_STATES, self.undo_slips)
+            found_readings = self.search(first_reading, MAX_SLIP_STATES, self.undo_slips)
             found_readings = [
                 reading
                 for reading in found_readings
@@ -230,9 +230,7 @@ class _Search:
         readings: list[Reading] = []
         while heap and len(seen_texts) < most_states:
             cost, _, reading = heapq.heappop(heap)
-            if readings and (
-                cost > readings[0].cost + RIVAL_MARGIN or len(readings) >= MOST_RIVALS
-            ):
+            if readings and (cost > readings[0].cost + RIVAL_MARGIN or len(readings) >= MAX_RIVALS):
                 break
             texts = reading.token_texts
             if texts in seen_texts:
@@ -244,7 +242,7 @@ class _Search:
                     readings.append(reading._replace(items=items))
                 continue
             for successor in successors(reading, items):
-                if len(successor.tokens) < MOST_TOKENS:
+                if len(successor.tokens) < MAX_TOKENS:
                     heapq.heappush(heap, (successor.cost, next(order), successor))
         return readings
 
@@ -273,7 +271,7 @@ class _Search:
 
     def apply_first_rewrites(self, reading: Reading) -> Reading:
         """Make the rewrites that come before all others, and make words one that are one."""
-        for _ in range(_MOST_FIRST_STEPS):
+        for _ in range(_MAX_FIRST_STEPS):
             joined_name = rewrites.join_one_name(reading.tokens, self.names)
             if joined_name is not None:
                 tokens, is_sensor_name = joined_name
@@ -428,7 +426,7 @@ def _is_near(failure: Failure, start: int, end: int) -> bool:
 def _has_unlikely_time(tokens: Sequence[Lexeme], k: int, concept: str) -> bool:
     """Return whether a number after a translated word rarely means seconds: `move(50, 50)`."""
     numbers = [token for token in tokens[k + 1 : k + 3] if token.kind is NUMBER]
-    least_time = LONG_TIME_S if concept in (*MOVES, "BEEP") else LEAST_MILLISECONDS
+    least_time = LONG_TIME_S if concept in (*MOVES, "BEEP") else MIN_MILLISECONDS
     is_timed = concept in (*MOVES, "BEEP", "W")
     return is_timed and bool(numbers) and float(numbers[0].text) >= least_time
 

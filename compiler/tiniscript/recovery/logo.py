@@ -25,9 +25,9 @@ _TOKEN = re.compile(
 )
 _TAUGHT_WORD = re.compile(r"\s*(?P<to>[^\W\d]\w*)[ \t]+(?P<name>[^\W\d]\w*)[ \t]*")
 _LONE_WORD = re.compile(r"\s*([^\W\d]\w*)[ \t]*")
-_LEAST_STEPS = 5  # fewer are rather seconds
+_MIN_STEPS = 5  # fewer are rather seconds
 _MAX_LOOP_DEPTH = 4  # loops
-_MOST_INSTRUCTIONS = 12  # instructions that are read as one
+_MAX_INSTRUCTIONS = 12  # instructions that are read as one
 
 
 class _Token(NamedTuple):
@@ -44,7 +44,7 @@ def logo_diagnostics(source: Source, kit: Kit) -> list[Diagnostic]:
     for line in source.text.split("\n"):
         pieces = _pieces(split_note(line)[0], line_start)
         while pieces:
-            ends = range(min(len(pieces), _MOST_INSTRUCTIONS), 0, -1)
+            ends = range(min(len(pieces), _MAX_INSTRUCTIONS), 0, -1)
             attempts = ((end, [token for piece in pieces[:end] for token in piece]) for end in ends)
             ends_and_diagnostics = (
                 (end, _diagnostic(tokens, source, names)) for end, tokens in attempts
@@ -185,7 +185,7 @@ class _Reader:
 
     def _move_text(self, word: str, number_text: str) -> str:
         unit = UNIT_OF.get(word, "")
-        if not unit or float(number_text) < (_LEAST_STEPS if unit == "CM" else LONG_TIME_S):
+        if not unit or float(number_text) < (_MIN_STEPS if unit == "CM" else LONG_TIME_S):
             return ""
         self.move_count += 1
         self.is_turned |= unit == "DEG"

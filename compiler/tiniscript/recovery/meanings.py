@@ -17,12 +17,11 @@ from tiniscript.base.spelling import Speller, is_slip, nearest
 from tiniscript.base.words import ALIASES, BLOCK_ENDS, EXTENTS, WORDS, LexiconEntry, lexicon
 from tiniscript.base.words import lexicon_concept as lexicon_concept
 from tiniscript.base.words import lexicon_meaning as lexicon_meaning
-from tiniscript.syntax.blocks import ENDS
+from tiniscript.syntax.blocks import WORD_OF_END
 from tiniscript.syntax.lexer import DASHES, NUMBER, UNKNOWN_SIGN, WORD
 from tiniscript.syntax.operators import COMPARISONS, SIGNS
 from tiniscript.syntax.outline import KnownNames
 
-WORD_OF_END = ENDS
 KNOWN_COST, MISSPELT_COST, NEAR_COST = 1, 2, 3  # costs of a meaning: exact, misspelt, one slip away
 BLOCK_STARTS = frozenset(BLOCK_ENDS) - {"DEF"}
 SEPARATORS = frozenset(";|{}")
@@ -36,7 +35,7 @@ _TOKEN = re.compile(
     r"|(<=|>=|<>|==|!=|=!|=>|=<|&&|\|\||->|<-|:=|\+\+|--(?=\s*(?:$|[;)]))|\+=|-=|\*=|\S\uFE0F?)"
 )
 _SIGNS = SIGNS | frozenset("(),;|")
-_MOST_NAME_WORDS = 4  # words of a name
+_MAX_NAME_WORDS = 4  # words of a name
 # Classes by the lexicon's meaning of a word outside of the language.
 _CLASSES = {
     LexiconEntry("unit", "cm", "1000"): "@in_cm", LexiconEntry("unit", "cm", "100000"): "@in_m",
@@ -47,7 +46,7 @@ _CLASSES = {
 }  # fmt: skip
 NEAR_CM = "10"  # an example of a near distance
 LONG_TIME_S = 20  # from here on, a number without a unit may be a power, degrees or centimetres
-MOST_POWER = 100
+MAX_POWER = 100
 _EIGHTH_TURN, FULL_TURN = (
     45,
     360,
@@ -55,9 +54,9 @@ _EIGHTH_TURN, FULL_TURN = (
 # Classes of numbers by their possible meanings.
 _CHECK_OF_UNIT: dict[str, Callable[[float], bool]] = {
     "@whole": float.is_integer, "@time": lambda number: number < LONG_TIME_S,
-    "@power": lambda number: LONG_TIME_S <= number <= MOST_POWER,
+    "@power": lambda number: LONG_TIME_S <= number <= MAX_POWER,
     "@angle": lambda number: (
-        MOST_POWER < number <= FULL_TURN or (number >= _EIGHTH_TURN and number % _EIGHTH_TURN == 0)
+        MAX_POWER < number <= FULL_TURN or (number >= _EIGHTH_TURN and number % _EIGHTH_TURN == 0)
     ),
 }  # fmt: skip
 _YEAR_WORDS = ("ANO", "ANOS")  # spellings of AÑO that do not occur
@@ -383,7 +382,7 @@ def _name_in_words(tokens: Sequence[Lexeme], end_text: str) -> tuple[str, ...]:
     is_number_glued_to_word = (
         end_text == ";" and len(tokens) > 1 and tokens[1].kind is WORD and tokens[1].space == ""
     )
-    for token in tokens[: _MOST_NAME_WORDS + 1]:
+    for token in tokens[: _MAX_NAME_WORDS + 1]:
         text = token.text
         if (
             token.kind not in (WORD, NUMBER, "-")

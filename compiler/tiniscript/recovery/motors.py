@@ -25,7 +25,7 @@ _SWITCH_CALL = re.compile(
     r"(?:\([ \t]*(?:(?P<number>\d+(?:\.\d+)?|\.\d+)[ \t]*(?:%[ \t]*)?)?\))?"
 )
 _DEF = re.compile(r"(?i)\bDEF\s+(\w+)")
-_LEAST_WAIT_MS = 100  # shortest wait in ms; a smaller number means seconds
+_MIN_WAIT_MS = 100  # shortest wait in ms; a smaller number means seconds
 _LIKELY_POWERS = range(10, 101)  # powers of a running motor; a smaller number means a time
 _PIECE = re.compile(r"[^;{}|\n]+")
 _WORD_PART = re.compile(r"[^\W\d_]+?(?=[A-Z](?:[a-z]|$)|[_.\d]|$)|[^\W\d_]+")
@@ -107,7 +107,7 @@ def _seconds_text(milliseconds_text: str) -> str:
     """Return the length of a wait in seconds: 500 means milliseconds."""
     return (
         number_text(float(milliseconds_text) / 1000)
-        if float(milliseconds_text) >= _LEAST_WAIT_MS
+        if float(milliseconds_text) >= _MIN_WAIT_MS
         else milliseconds_text
     )
 

@@ -11,11 +11,11 @@ from itertools import pairwise
 from typing import NamedTuple
 
 from tiniscript.base.words import ALIASES, BLOCK_ENDS
-from tiniscript.recovery.meanings import WORD_OF_END
 from tiniscript.recovery.writing import split_note
+from tiniscript.syntax.blocks import WORD_OF_END
 
 _SETUP = re.compile(r"\s*S[IB]\s*\|\s*", re.IGNORECASE)
-_MOST_MOVES = 20
+_MAX_MOVES = 20
 _FIRST_WORDS = re.compile(r"\s*(\w*)[ \t]*(\w*)")
 
 
@@ -57,7 +57,7 @@ def _reorder(text: str, is_at_start: bool) -> MovedProgram | None:
     pieces = [*_pieces(text)]
     first_move: MovedProgram | None = None
     is_guess = False
-    for _ in range(_MOST_MOVES):
+    for _ in range(_MAX_MOVES):
         swap, late_end = _swapped_ends(pieces), _late_end(pieces)
         move = swap or late_end or _late_def(pieces, is_at_start)
         if move is None:

@@ -20,7 +20,6 @@ from tiniscript.recovery.meanings import (
     NEAR_COST,
     SEPARATOR_LABELS,
     WILDCARD_LABELS,
-    WORD_OF_END,
     Lexeme,
     Names,
     brackets_end,
@@ -29,6 +28,7 @@ from tiniscript.recovery.meanings import (
     number_text,
     texts,
 )
+from tiniscript.syntax.blocks import WORD_OF_END
 from tiniscript.syntax.lexer import NUMBER, WORD
 from tiniscript.syntax.operators import COMPARISONS, OPPOSITES
 

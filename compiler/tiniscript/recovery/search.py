@@ -21,7 +21,6 @@ from tiniscript.recovery.blocks import Line, Matching, TokenEdit
 from tiniscript.recovery.lines import BRACES, SURE_MARGIN, Reading, Step, is_right
 from tiniscript.recovery.meanings import (
     NEAR_COST,
-    WORD_OF_END,
     Lexeme,
     Names,
     lexemes,
@@ -40,10 +39,11 @@ from tiniscript.recovery.writing import (
     split_note,
     with_signs,
 )
+from tiniscript.syntax.blocks import WORD_OF_END
 from tiniscript.syntax.outline import Failure
 
-MOST_UNREAD_LINES = 5  # unreadable lines after which others are read quickly
-MOST_ALTERNATIVES = 12  # readings of a line that are tried besides the cheapest ones
+MAX_UNREAD_LINES = 5  # unreadable lines after which others are read quickly
+MAX_ALTERNATIVES = 12  # readings of a line that are tried besides the cheapest ones
 # First and last line of a block whose condition is at its end.
 _LONE_LOOP_START = re.compile(
     rf"\s*(?:S[IB]\s*\|\s*)?(?:LOOP|{words_of('repeat', 'make')})\b\s*\{{?\s*$"
@@ -248,7 +248,7 @@ class Recovery:
         if not isinstance(items, Failure):
             line.reading = Reading(0, tokens, (), True, False, items)
             return
-        readings = lines.read(tokens, names, is_quick=self.unread_count > MOST_UNREAD_LINES)
+        readings = lines.read(tokens, names, is_quick=self.unread_count > MAX_UNREAD_LINES)
         if not readings:
             self.unread_count += 1
             line.reading = self.read_parts(tokens, names)
@@ -317,7 +317,7 @@ class Recovery:
         ):
             return ()
         candidates = {self.chosen_candidate.text: self.chosen_candidate}
-        for cost, k, rival in self.rivals()[:MOST_ALTERNATIVES]:
+        for cost, k, rival in self.rivals()[:MAX_ALTERNATIVES]:
             readings = [rival if line is self.lines[k] else line.reading for line in self.lines]
             candidate = self.candidate(readings, True) if cost < SURE_MARGIN else None
             if candidate and candidate.is_whole:
@@ -359,7 +359,7 @@ class Recovery:
         """Yield the readings of each line; finally those without the program's blocks."""
         cheapest_readings = [line.reading for line in self.lines]
         yield cheapest_readings, True
-        for _, k, rival in self.rivals()[:MOST_ALTERNATIVES]:
+        for _, k, rival in self.rivals()[:MAX_ALTERNATIVES]:
             yield [*cheapest_readings[:k], rival, *cheapest_readings[k + 1 :]], True
         sure_readings = [
             reading if reading.is_sure else _UNREAD_LINE for reading in cheapest_readings

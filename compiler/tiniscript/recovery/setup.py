@@ -31,8 +31,8 @@ from tiniscript.recovery.writing import split_note
 from tiniscript.syntax.operators import COMPARISONS
 
 SEAL = "~"  # begins a checksum: such a line is copied again
-_MOST_CHARACTERS = 4_000  # characters of a first line that are read
-_MOST_START_WORDS = 8  # words about the start of a program
+_MAX_CHARACTERS = 4_000  # characters of a first line that are read
+_MAX_START_WORDS = 8  # words about the start of a program
 _CALL = re.compile(r"(?i)\s*(?:[FBLRMW]|BEEP)\s*\(")
 _SETUP, _LINE = re.compile(r"(?im)^\s*S[IB]\s*\|"), re.compile(r"\S[^\n]*")
 _HEAD_IN_WORDS = re.compile(r"(?i)(s[ií]|sb)[ \t]*[,.:!]?[ \t]+(?=[^\W\d])")
@@ -63,7 +63,7 @@ def beginning_diagnostics(
 
 def wrong_setup_word(source: Source, diagnostics: Sequence[Diagnostic]) -> Diagnostic | None:
     """Return the diagnostics for a word before the bar other than `SI`."""
-    first_lexemes = lexemes(source.text[:_MOST_CHARACTERS].lstrip().partition("\n")[0])[:1]
+    first_lexemes = lexemes(source.text[:_MAX_CHARACTERS].lstrip().partition("\n")[0])[:1]
     has_setup = SEAL in source.text or (first_lexemes and first_lexemes[0].text in ("SI", "SB"))
     setup_diagnostics = (
         diagnostic for diagnostic in diagnostics if diagnostic.code is codes.SETUP_UNKNOWN
@@ -177,7 +177,7 @@ def _start_in_words(words: Sequence[Lexeme], names: Names) -> tuple[str, int]:
         return "", 0
     if names.find_meaning(words[0].text) == "START":
         return "SI", 1
-    first_words = words[:_MOST_START_WORDS]
+    first_words = words[:_MAX_START_WORDS]
     button_positions = [
         k for k, word in enumerate(first_words) if lexicon_concept(word.text) == "BUTTON"
     ]

@@ -20,7 +20,6 @@ from tiniscript.diagnostics.codes import Code
 from tiniscript.recovery.lines import BRACES, Step
 from tiniscript.recovery.meanings import (
     UNNAMED_END,
-    WORD_OF_END,
     Lexeme,
     certain_concept,
     lexemes,
@@ -29,6 +28,7 @@ from tiniscript.recovery.meanings import (
     texts,
 )
 from tiniscript.recovery.writing import format_line
+from tiniscript.syntax.blocks import WORD_OF_END
 from tiniscript.syntax.lexer import NUMBER, WORD
 
 BLOCK_WORDS = frozenset((*BLOCK_ENDS, *WORD_OF_END, "ELSE", "ELSEIF", *BRACES))

@@ -35,8 +35,8 @@ from tiniscript.recovery.meanings import (
 )
 from tiniscript.syntax.lexer import NUMBER, WORD
 
-_LEAST_STEPS = 10  # from this many steps on, one step is one centimetre
-LEAST_MILLISECONDS = 100  # no wait has so many seconds
+_MIN_STEPS = 10  # from this many steps on, one step is one centimetre
+MIN_MILLISECONDS = 100  # no wait has so many seconds
 _SIDES = ("left", "right")
 # One-letter names of a move's values, with their units.
 _UNIT_OF_LETTER = {"T": "s", "P": "%", "V": "%"}
@@ -405,7 +405,7 @@ class _Reader:
                 _Value(number_text(value.number / 1000), "s") if value in plain_values else value
                 for value in values
             ]
-        is_in_milliseconds = any(value.number >= LEAST_MILLISECONDS for value in plain_values)
+        is_in_milliseconds = any(value.number >= MIN_MILLISECONDS for value in plain_values)
         return None if self.command == "W" and is_in_milliseconds else values
 
     def _fill_slots(
@@ -418,7 +418,7 @@ class _Reader:
         for k, value in enumerate(values):
             unit = value.unit
             is_scratch_steps = unit == "steps" and self.words[0].text not in WORDS
-            if is_scratch_steps and extent_word == "CM" and value.number >= _LEAST_STEPS:
+            if is_scratch_steps and extent_word == "CM" and value.number >= _MIN_STEPS:
                 unit, self.is_sure = EXTENTS[extent_word].unit, False
             if unit == "turns" and extent_word == "DEG":
                 unit, self.is_sure = EXTENTS[extent_word].unit, False

@@ -31,7 +31,6 @@ from tiniscript.recovery.instructions import (
 from tiniscript.recovery.meanings import (
     ASKING_WORDS,
     NEAR_COST,
-    WORD_OF_END,
     Lexeme,
     Names,
     lexemes,
@@ -49,19 +48,20 @@ from tiniscript.recovery.trailing_tokens import (
 )
 from tiniscript.recovery.worded import condition_values, sensors_of
 from tiniscript.recovery.writing import format_line, shorten, split_note
+from tiniscript.syntax.blocks import WORD_OF_END
 from tiniscript.syntax.free_names import free_number_name
 from tiniscript.syntax.lexer import QUOTES, WORD
 from tiniscript.syntax.operators import COMPARISONS
 
-MOST_WORDS = 24  # words after an instruction that are read
-MOST_INSTRUCTIONS = 1_000  # instructions of a text that are read
+MAX_WORDS = 24  # words after an instruction that are read
+MAX_INSTRUCTIONS = 1_000  # instructions of a text that are read
 # Codes of words that a repair may read better.
 _SECONDARY_CODES = (codes.REPEATED, codes.WORDS_AFTER)
 _NOTE_CODES = (codes.WORDS_AFTER, codes.SEVERAL_INSTRUCTIONS)
 _UNIT_MEANINGS = (("s",), ("cm",), ("°",), ("%",), ("Hz",))
 _PROSE_SIGNS = frozenset((",", ".", ":", "!", "\u00a1", *QUOTES))
-_MOST_REPEATED = 8  # instructions that an example repeats
-_MOST_LINES_BACK = 40  # lines and instructions that are searched for repetitions
+_MAX_REPEATED = 8  # instructions that an example repeats
+_MAX_LINES_BACK = 40  # lines and instructions that are searched for repetitions
 _BODY_STARTS = (*BLOCK_ENDS, "ELSE", "ELSEIF")
 # An instruction of a line, and the bar of a `SI|`.
 _INSTRUCTION_AND_BAR = re.compile(r"((?:[^;{}|]|\|\|)+)(\|?)")
@@ -147,7 +147,7 @@ def find_suggestions(text: str, kit: Kit) -> list[Suggestion]:
     suggestions: list[Suggestion] = []
     instructions_above: list[str | None] = []
     line_start = depth = 0
-    instructions_left = MOST_INSTRUCTIONS
+    instructions_left = MAX_INSTRUCTIONS
     for body, line in zip(bodies, text.split("\n"), strict=True):
         suggestions_of_line: list[Suggestion] = []
         tokens = lexemes(body)
@@ -202,7 +202,7 @@ def _trailing_words(body: str, start: int, line_context: LineContext) -> Iterato
         if not tokens or match[2]:
             continue
         is_block = tokens[0].text in (*_BODY_STARTS, *WORD_OF_END)
-        while 0 < len(tokens) <= lines.MOST_TOKENS:
+        while 0 < len(tokens) <= lines.MAX_TOKENS:
             instruction_size = instruction_length(tokens, names)
             tokens_after = tokens[instruction_size:]
             if not instruction_size and (spoken_call := _spoken_call(tokens, names)):
@@ -257,7 +257,7 @@ def matching_rows(subject: Subject) -> Iterator[tuple[SuggestionRow, Gaps]]:
 
 
 def _suggestion_for(trailing_words: _TrailingWords) -> Suggestion | None:
-    if len(trailing_words.row_tokens) > MOST_WORDS or not trailing_words.may_say_something():
+    if len(trailing_words.row_tokens) > MAX_WORDS or not trailing_words.may_say_something():
         return None
     for row, gaps in matching_rows(trailing_words):
         is_aside = (
@@ -444,7 +444,7 @@ def _loop_over_all(gaps: Gaps, times: str) -> str:
         [line for line in gaps.trailing_tokens.instructions_before if line],
     )
     has_all_instructions = (
-        len(lines_before) == len(trailing_tokens.instructions_before) <= _MOST_LINES_BACK
+        len(lines_before) == len(trailing_tokens.instructions_before) <= _MAX_LINES_BACK
     )
     if not has_all_instructions or trailing_tokens.is_in_block or times in ("", "0", "1"):
         return ""
@@ -461,7 +461,7 @@ def _loop_over_all(gaps: Gaps, times: str) -> str:
         "".join(text.split()).upper()
     ):  # F and L of `F; L; F; L`
         repeated_instructions = repeated_instructions[: repeated_match[1].count(";")]
-    if not 0 < len(repeated_instructions) <= _MOST_REPEATED:
+    if not 0 < len(repeated_instructions) <= _MAX_REPEATED:
         return ""
     return ";".join((f"LOOP({times})", *repeated_instructions, BLOCK_ENDS["LOOP"]))
 

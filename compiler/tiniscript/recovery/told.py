@@ -16,7 +16,7 @@ from typing import NamedTuple
 from tiniscript.base.kit import Kit
 from tiniscript.base.source import Edit, Source, Span, apply_edits, edits_overlap
 from tiniscript.diagnostics import codes
-from tiniscript.diagnostics.codes import MOST_DIAGNOSTICS, Code, Diagnostic, Repair
+from tiniscript.diagnostics.codes import MAX_DIAGNOSTICS, Code, Diagnostic, Repair
 from tiniscript.diagnostics.fixing import Check, drop_wrong_offers
 from tiniscript.recovery import slips
 from tiniscript.recovery.bracketed import explain_brackets, explain_else_question
@@ -41,9 +41,9 @@ from tiniscript.recovery.shares import find_shares
 from tiniscript.recovery.suggestions import find_suggestions
 from tiniscript.recovery.usage import with_usage
 
-MOST_ROUNDS = 20  # most rounds of reading on from the repaired text
+MAX_ROUNDS = 20  # most rounds of reading on from the repaired text
 _LONE_CR = re.compile(r"\r(?!\n)")
-MOST_CHARACTERS = 4_000  # characters of a text that is read as a whole
+MAX_CHARACTERS = 4_000  # characters of a text that is read as a whole
 
 
 class Findings(NamedTuple):
@@ -68,7 +68,7 @@ class WrongText:
     def recovery(self) -> Recovery | None:
         """The readings of the text; or nothing for a long one, or one that is copied again."""
         text = self.source.text.replace("\r\n", "\n").replace("\r", "\n")
-        if len(text) > MOST_CHARACTERS or SEAL in text:
+        if len(text) > MAX_CHARACTERS or SEAL in text:
             return None
         return Recovery(
             text,
@@ -91,9 +91,9 @@ def diagnose(
     """
     text = _LONE_CR.sub("\n", source.text)
     source = Source(text, source.name)
-    results = _read(WrongText(source, diagnostics, check, kit), MOST_ROUNDS)
-    if len(results) > MOST_DIAGNOSTICS:
-        results = sorted(results, key=lambda diagnostic: diagnostic.span)[: MOST_DIAGNOSTICS + 1]
+    results = _read(WrongText(source, diagnostics, check, kit), MAX_ROUNDS)
+    if len(results) > MAX_DIAGNOSTICS:
+        results = sorted(results, key=lambda diagnostic: diagnostic.span)[: MAX_DIAGNOSTICS + 1]
     results = [explain_brackets(diagnostic, text, kit, is_offered=True) for diagnostic in results]
     results = drop_wrong_offers(results, text, check)  # every offer is correct
     results = withhold_lossy_repairs(results, text, kit)  # every repair keeps the written values
@@ -114,7 +114,7 @@ def _read(wrong_text: WrongText, rounds_left: int) -> list[Diagnostic]:
     )
     if not diagnostics:
         diagnostics = with_usage(wrong_text.diagnostics, wrong_text.source, wrong_text.kit)
-    elif len(diagnostics) <= MOST_DIAGNOSTICS:
+    elif len(diagnostics) <= MAX_DIAGNOSTICS:
         repaired_text = apply_edits(wrong_text.source.text, edits)
         diagnostics_left = wrong_text.check(repaired_text)
         if any(

@@ -25,12 +25,12 @@ from tiniscript.recovery import lines
 from tiniscript.recovery.meanings import (
     ASKING_WORDS,
     NEAR_COST,
-    WORD_OF_END,
     Lexeme,
     Names,
     brackets_end,
     lexemes,
 )
+from tiniscript.syntax.blocks import WORD_OF_END
 from tiniscript.syntax.lexer import NUMBER, QUOTES, UNKNOWN_SIGN, WORD
 from tiniscript.syntax.operators import COMPARISONS
 from tiniscript.syntax.outline import Failure

@@ -48,7 +48,7 @@ from tiniscript.recovery.meanings import (
     ASKING_WORDS,
     INSTRUCTION_WORDS,
     LONG_TIME_S,
-    MOST_POWER,
+    MAX_POWER,
     Lexeme,
     Names,
     brackets_end,
@@ -93,21 +93,21 @@ _WORDS_WITH_VALUES = (
     "W",
 )  # order of values: the direction first
 _LOW_POWER = 20  # an example of a low power
-_MOST_INSTRUCTIONS = 6  # instructions that an example moves into a block
+_MAX_INSTRUCTIONS = 6  # instructions that an example moves into a block
 _END_WORD = re.compile(rf"\b{words_of('end')}")
 _BLOCK_WORD = re.compile(rf"(?i)(?:{'|'.join((*BLOCK_ENDS, 'END', 'ELSE'))})\b|END_")
 _TOP_LEVEL_WORD = re.compile(r"(?i)\s*(?:TASK|DEF|WHEN)\b")
 _WORD_CHARACTER = re.compile(r"\w")
 _MEMBER_CALL = re.compile(r"[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)+(?=[ \t]*\()")
 _CALL_WITH_VALUES = re.compile(r"([^\W\d]\w*)\s*\((?=\W{0,40}\w).*\)", re.DOTALL)
-_MOST_HEADER_CHARACTERS = 100  # characters of a DEF before the name of a value
+_MAX_HEADER_CHARACTERS = 100  # characters of a DEF before the name of a value
 _DEF_AT_END = re.compile(r"(?i)\bDEF\s+(\w+[ \t]*\([^()\n]*)?$")
 _OWN_WORD = re.compile(r"(\w{3,})\s*(\(\s*(\d{0,3})\s*\))?")
 _ANGLE_AND_POWER = re.compile(r"\(\s*([0-9.]+)\s*,\s*([0-9]+)\s*\)$")
 _FOREVER_SECOND = re.compile(r"(?i)([FBLR])\s*\(([^(),]+),\s*FOREVER\s*\)(\s*UNTIL.*)?")
 _TURNED_CALL = re.compile(r"(?im)\b[FBLR]\s*\(\s*([0-9.]+)\s*,\s*([0-9]+)\s*\)(?!\s*UNTIL)")
-_MOST_CHARACTERS = 120  # characters of a sentence that a message shows
-_MOST_DIAGNOSTICS = 30  # diagnostics with further explanations
+_MAX_CHARACTERS = 120  # characters of a sentence that a message shows
+_MAX_DIAGNOSTICS = 30  # diagnostics with further explanations
 _VALUE_CODES = (codes.MISSING_COMMA, codes.MISSING_CLOSE, codes.MISSING_VALUE)
 _NAME_CODES = (codes.UNKNOWN_NAME, codes.USED_BEFORE_SET)
 _DEF_END = re.compile(r"(?i)\bEND_?DEF\b")
@@ -115,7 +115,7 @@ _INSTRUCTION_STARTS = (";", "newline", "|")  # tokens after which an instruction
 _DEF_ENDS = ("END_DEF", "ENDDEF")
 _FARTHEST_CM = 400  # more is rather in milliseconds
 _NOUN_OF_UNIT = {"s": "seconds", "%": "percent", "Hz": "hertz"}  # noun of each unit
-_MOST_END_WORDS = 4  # words: `fin del bucle`
+_MAX_END_WORDS = 4  # words: `fin del bucle`
 _KINDS_NO_CALL = ("leaves", "again", "etc", "end")
 _KINDS_AFTER_NUMBER = (
     "unit",
@@ -140,7 +140,7 @@ def with_usage(diagnostics: Sequence[Diagnostic], source: Source, kit: Kit) -> l
     ] == ["LOOP"]
     diagnostics = text.with_name(diagnostics)
     results: list[Diagnostic] = []
-    for diagnostic in diagnostics[:_MOST_DIAGNOSTICS]:
+    for diagnostic in diagnostics[:_MAX_DIAGNOSTICS]:
         results.append(
             (_usage_diagnostic(Usage(text, diagnostic)) if diagnostic.repair is None else None)
             or diagnostic
@@ -163,7 +163,7 @@ def with_usage(diagnostics: Sequence[Diagnostic], source: Source, kit: Kit) -> l
         results += text.swapped_moves()
     return [
         diagnostic
-        for diagnostic in (*results, *diagnostics[_MOST_DIAGNOSTICS:])
+        for diagnostic in (*results, *diagnostics[_MAX_DIAGNOSTICS:])
         if not (diagnostic.code in _NAME_CODES and text.is_in_wrong_def(diagnostic, results))
     ]
 
@@ -194,7 +194,7 @@ class _Text:
         """Return moves with the power before the time, as another call of the text has them."""
         diagnostics: list[Diagnostic] = []
         for match in _TURNED_CALL.finditer(self.source.text):
-            if LONG_TIME_S <= float(match[1]) <= MOST_POWER and 0 < float(match[2]) < LONG_TIME_S:
+            if LONG_TIME_S <= float(match[1]) <= MAX_POWER and 0 < float(match[2]) < LONG_TIME_S:
                 fix = f"{match[0][0].upper()}({match[2]}, {match[1]})"
                 values = {"time": match[1], "power": match[2], "fix": fix}
                 diagnostics.append(Diagnostic(codes.SWAPPED, Span(*match.span()), values))
@@ -303,7 +303,7 @@ class Usage:
         is_strange = is_strange and not self.diagnostic.values.get("near")
         words = (*self.words, "_".join(self.words[:2]))  # `turn on the led`, `u turn`
         are_sentence = (
-            len(self.words) > 1 and len(self.source[self.instruction_span]) <= _MOST_CHARACTERS
+            len(self.words) > 1 and len(self.source[self.instruction_span]) <= _MAX_CHARACTERS
         )
         labels: dict[str, object] = {
             code.number: True,
@@ -518,7 +518,7 @@ class Usage:
             angle = numbers[0]  # `SPIN 360`: no time, and no power
         turns = spoken_instructions(self.row_tokens, self.names)
         values = format_line(self.row_tokens[1:])
-        is_call = all(float(number) <= MOST_POWER for number in numbers)
+        is_call = all(float(number) <= MAX_POWER for number in numbers)
         if angle and not is_timed:
             return _Turn(direction, angle, f"({angle} DEG, 60)")
         has_no_sample_time = len(turns) == 1 and not any(
@@ -647,7 +647,7 @@ class Usage:
         if is_more or not LONG_TIME_S <= float(number_token.text) <= _FARTHEST_CM:
             return {}
         extent_call = f"{word}({number_token.text} CM, {POWER.sample})"
-        if float(number_token.text) > MOST_POWER:
+        if float(number_token.text) > MAX_POWER:
             return {"fix": extent_call, "usage": ""}
         return {
             "number": number_token.text,
@@ -775,7 +775,7 @@ class Usage:
         """Another name for a word of the language that stands for one."""
         word, text, start = self.diagnostic.values["word"], self.text, self.diagnostic.span.start
         assignment = re.match(r"\s*=\s*([1-9]?)", self.text_after)
-        definition = _DEF_AT_END.search(text[max(0, start - _MOST_HEADER_CHARACTERS) : start])
+        definition = _DEF_AT_END.search(text[max(0, start - _MAX_HEADER_CHARACTERS) : start])
         right = free_word_name(text, word) if assignment or definition else ""
         suggestion = (nearest(word, self.names.variables - {word}) or "") if assignment else ""
         is_clock = bool(assignment and word == "TIME" and not assignment[1])
@@ -901,7 +901,7 @@ def _short_instructions(text: str) -> list[str]:
     instructions = [
         instruction.strip() for line in text_lines for instruction in line if instruction.strip()
     ]
-    is_long = len(instructions) > _MOST_INSTRUCTIONS or any(map(_BLOCK_WORD.match, instructions))
+    is_long = len(instructions) > _MAX_INSTRUCTIONS or any(map(_BLOCK_WORD.match, instructions))
     return [] if is_long else instructions
 
 
@@ -919,7 +919,7 @@ def _instructions_before_blocks(text: str, name: str) -> list[str]:
             instructions,
         )
     ]
-    return instructions_before if len(instructions_before) <= _MOST_INSTRUCTIONS else []
+    return instructions_before if len(instructions_before) <= _MAX_INSTRUCTIONS else []
 
 
 def _is_call_of(instruction: str, name: str) -> bool:

@@ -21,7 +21,7 @@ from tiniscript.syntax.lexer import NUMBER, WORD, Token
 SIGN_OF_NAME = {"open": "(", "close": ")", "comma": ",", "semicolon": ";", "bar": "|"}
 _SPOKEN_SIGN = re.compile(rf"\b{words_of('sign').replace('_', ' ')}\b")
 _NAMED_LETTER = re.compile(rf"(?i)\b{words_of('spelt').replace('_', ' ')}(?=\s*\()")
-MOST_BLOCK_CHARACTERS = 160  # characters of one that a message shows
+MAX_BLOCK_CHARACTERS = 160  # characters of one that a message shows
 PLAIN_SIGNS = str.maketrans("“”„‘’", '"""\'\'')
 # Full-width signs of Chinese keyboards.
 PLAIN_SIGNS |= {wide: wide - 0xFEE0 for wide in range(0xFF01, 0xFF5F)}
@@ -84,7 +84,7 @@ def in_one_line(text: str) -> str:
     message."""
     parts = (format_line(tokens_of(line)).strip("; ") for line in text.split("\n"))
     joined_text = "; ".join(part for part in parts if part)
-    return joined_text if len(joined_text) <= MOST_BLOCK_CHARACTERS else ""
+    return joined_text if len(joined_text) <= MAX_BLOCK_CHARACTERS else ""
 
 
 def shorten(text: str) -> str:

@@ -13,7 +13,7 @@ from tiniscript.base.files import is_pipe
 from tiniscript.robots.profile import ProfileRefused, Robot
 
 DEFAULT = "tinibot"
-MOST_FILE_BYTES = 64 * 1024
+MAX_FILE_BYTES = 64 * 1024
 
 
 def names() -> list[str]:
@@ -71,7 +71,7 @@ def text_of(path: str, refusal_type: type[ProfileRefused] = ProfileRefused) -> s
         raise refusal_type(("file_unreadable", values))
     try:
         with Path(path).open("rb") as file:
-            data = file.read(MOST_FILE_BYTES + 1)
+            data = file.read(MAX_FILE_BYTES + 1)
     except FileNotFoundError:
         raise refusal_type(("file_missing", values)) from None
     except (OSError, ValueError):  # ValueError: the name is not valid for a file
@@ -88,8 +88,8 @@ def decode_profile(
     from tiniscript.robots.refusals import printable_value
 
     values = {"file": printable_value(name)}
-    if len(data) > MOST_FILE_BYTES:
-        limit = f"{MOST_FILE_BYTES // 1024} KB"
+    if len(data) > MAX_FILE_BYTES:
+        limit = f"{MAX_FILE_BYTES // 1024} KB"
         raise refusal_type(("file_too_large", {**values, "limit": limit}))
     try:
         return data.decode("utf-8-sig")

@@ -15,8 +15,8 @@ from tiniscript import robots
 from tiniscript.base import files
 from tiniscript.robots.profile import ProfileRefused, Robot
 
-MOST_PROFILES = 20  # profiles; the oldest go first
-MOST_FILE_BYTES = 200_000
+MAX_PROFILES = 20  # profiles; the oldest go first
+MAX_FILE_BYTES = 200_000
 
 
 def remember(path: str, kit: int) -> None:
@@ -34,7 +34,7 @@ def remember(path: str, kit: int) -> None:
                     for remembered_profile in _remembered_profiles()
                     if remembered_profile != entry
                 ),
-            ][:MOST_PROFILES]
+            ][:MAX_PROFILES]
             files.keep(_path(), json.dumps(paths).encode())
 
 
@@ -56,7 +56,7 @@ def profiles() -> list[tuple[str, Robot]]:
 
 def _remembered_profiles() -> list[tuple[int, str]]:
     try:
-        entries = json.loads(files.read_limited(_path(), MOST_FILE_BYTES))
+        entries = json.loads(files.read_limited(_path(), MAX_FILE_BYTES))
         return [(int(kit), str(path)) for kit, path in entries if str(path).isprintable()]
     except (OSError, ValueError, OverflowError, TypeError, RecursionError):
         return []

@@ -9,7 +9,7 @@ import math
 from collections.abc import Mapping, Sequence
 
 from tiniscript.base.fixed_point import ONE
-from tiniscript.base.kit import MOST_DEVICES, NUMBER, YES_NO, Device, Kit
+from tiniscript.base.kit import MAX_DEVICES, NUMBER, YES_NO, Device, Kit
 from tiniscript.base.languages import SOURCE_LANGUAGE, ByLanguage, languages
 from tiniscript.base.words import WORDS
 from tiniscript.robots.board_reader import device_tables, read_board
@@ -17,9 +17,9 @@ from tiniscript.robots.profile import SEEN_KINDS, Body, Place, ProfileRefused, R
 from tiniscript.robots.refusals import printable_value
 from tiniscript.robots.toml_table import Table, root_of
 
-MOST_NAME_CHARACTERS = 24
-MOST_UNIT_CHARACTERS = 8
-MOST_LABEL_CHARACTERS = 60
+MAX_NAME_CHARACTERS = 24
+MAX_UNIT_CHARACTERS = 8
+MAX_LABEL_CHARACTERS = 60
 FARTHEST_CM = 1000 * ONE
 FASTEST_CM_S = 1000 * ONE
 FASTEST_TURN = 10_000 * ONE
@@ -59,8 +59,8 @@ def _read_kit(table: Table) -> Kit:
 
 def _read_devices(table: Table, key: str, taken_names: set[str]) -> tuple[Device, ...]:
     tables = table.tables(key)
-    if len(tables) > MOST_DEVICES:
-        table.complain("too_many", key, found=str(len(tables)), most=str(MOST_DEVICES))
+    if len(tables) > MAX_DEVICES:
+        table.complain("too_many", key, found=str(len(tables)), most=str(MAX_DEVICES))
     return tuple(_read_device(table, key == "actuators", taken_names) for table in tables)
 
 
@@ -88,9 +88,9 @@ def _read_name(table: Table, taken_names: set[str]) -> str:
     name = text.upper()
     if not _is_name(text):
         table.complain("name_bad", "name", found=printable_value(text))
-    elif len(name) > MOST_NAME_CHARACTERS:
+    elif len(name) > MAX_NAME_CHARACTERS:
         table.complain(
-            "name_too_long", "name", found=printable_value(name), most=str(MOST_NAME_CHARACTERS)
+            "name_too_long", "name", found=printable_value(name), most=str(MAX_NAME_CHARACTERS)
         )
     elif name in WORDS:
         table.complain("name_is_word", "name", found=name)
@@ -106,9 +106,9 @@ def _is_name(text: str) -> bool:
 
 def _read_unit(table: Table) -> str:
     unit = table.text("unit") or ""
-    if len(unit) > MOST_UNIT_CHARACTERS or not unit.isprintable() or " " in unit:
+    if len(unit) > MAX_UNIT_CHARACTERS or not unit.isprintable() or " " in unit:
         table.complain(
-            "unit_bad", "unit", found=printable_value(unit), most=str(MOST_UNIT_CHARACTERS)
+            "unit_bad", "unit", found=printable_value(unit), most=str(MAX_UNIT_CHARACTERS)
         )
     return unit
 
@@ -188,6 +188,6 @@ def _read_language(table: Table, language: str, devices: Sequence[Device]) -> di
         name = "robot" if key == "robot" else known_names.get(key.upper())
         if name is None:
             labels.complain_not_in_kit(key, tuple(known_names))
-        elif (label := labels.label(key, MOST_LABEL_CHARACTERS)) is not None:
+        elif (label := labels.label(key, MAX_LABEL_CHARACTERS)) is not None:
             label_of_name[name] = label
     return label_of_name

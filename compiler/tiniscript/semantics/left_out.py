@@ -14,7 +14,7 @@ from tiniscript.base.source import Edit, Source, Span
 from tiniscript.syntax import ast
 
 _END = re.compile(r"(?i)\bEND_?IF\Z")
-_MOST_CHARACTERS = 180  # characters that a message can show
+_MAX_CHARACTERS = 180  # characters that a message can show
 
 
 class RewrittenIf(NamedTuple):
@@ -77,7 +77,7 @@ def _rewrite_if(
         "ENDIF",
     ]
     text = ";".join(" ".join(part.split("\n")) for part in parts)
-    if len(text) > _MOST_CHARACTERS or any("\n" in part or "//" in part for part in parts):
+    if len(text) > _MAX_CHARACTERS or any("\n" in part or "//" in part for part in parts):
         return None
     if "//" in source[whole_span]:
         return _with_notes(source, if_node, later_instructions, break_node, text)

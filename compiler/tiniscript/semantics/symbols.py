@@ -13,7 +13,7 @@ from tiniscript.base.kit import Kit
 from tiniscript.base.source import Edit, Source, Span
 from tiniscript.base.words import COMPARATORS
 from tiniscript.diagnostics import codes
-from tiniscript.diagnostics.codes import MOST_DIAGNOSTICS, Code, Diagnostic, Repair
+from tiniscript.diagnostics.codes import MAX_DIAGNOSTICS, Code, Diagnostic, Repair
 from tiniscript.syntax import ast
 
 NUMBER, YES_NO, ANY = "number", "yes_no", "any"  # ANY: a mistake was already reported there
@@ -116,11 +116,11 @@ class Scope:
         return name in self.yes_no_sensors
 
     def nearest_word(self, word: str, known_words: Iterable[str]) -> str:
-        """Return the nearest known word for a message, for the first MOST_DIAGNOSTICS mistakes.
+        """Return the nearest known word for a message, for the first MAX_DIAGNOSTICS mistakes.
 
         After that `known_words` is not searched: a long program with many mistakes stays fast.
         """
-        if len(self.diagnostics) >= MOST_DIAGNOSTICS:
+        if len(self.diagnostics) >= MAX_DIAGNOSTICS:
             return ""
         from tiniscript.base.spelling import nearest
 

@@ -20,7 +20,7 @@ from tiniscript.base.words import (
     names_argument,
 )
 from tiniscript.diagnostics import codes
-from tiniscript.diagnostics.codes import MOST_DIAGNOSTICS
+from tiniscript.diagnostics.codes import MAX_DIAGNOSTICS
 from tiniscript.semantics.named_values import value_of, yes_no_of
 from tiniscript.semantics.symbols import Scope
 from tiniscript.syntax import ast
@@ -30,7 +30,7 @@ _LETTER = re.compile(r"(?i)(?<!\w)([A-Z])[ \t]*\(")
 _DIGITS = "0123456789"
 _LAMP_NAME = "LED"  # name of the lamp in kits that have one
 _TRUTH_BY_VALUE = {"TRUE": "TRUE", "1": "TRUE", "FALSE": "FALSE", "0": "FALSE"}
-MOST_REPETITIONS = 20  # most repetitions of a DEF that a class does by hand
+MAX_REPETITIONS = 20  # most repetitions of a DEF that a class does by hand
 
 
 def report_unknown(scope: Scope, node: ast.Command, def_name: str | None) -> None:
@@ -123,7 +123,7 @@ def report_placeholders(scope: Scope, node: ast.Command, word: Word, diagnostic_
 def report_words_shown(scope: Scope, diagnostic_count: int) -> None:
     """`SHOW(HOLA)`: words are not shown. Changes the diagnostics since `diagnostic_count`."""
     shown_words = dict.fromkeys(
-        diagnostic.values.get("shown") for diagnostic in scope.diagnostics[:MOST_DIAGNOSTICS]
+        diagnostic.values.get("shown") for diagnostic in scope.diagnostics[:MAX_DIAGNOSTICS]
     )
     for k, diagnostic in enumerate(scope.diagnostics[diagnostic_count:], diagnostic_count):
         if diagnostic.code is codes.UNKNOWN_NAME and not diagnostic.values.get("near"):
@@ -139,9 +139,9 @@ def report_words_shown(scope: Scope, diagnostic_count: int) -> None:
 def whole_name(scope: Scope, part: str, names: AbstractSet[str]) -> str:
     """Return the one name that `part` is a word of, or shortened: MI_VELOCIDAD for VELOCIDAD, VEL.
 
-    After MOST_DIAGNOSTICS mistakes the names are not searched, so that a long program stays fast.
+    After MAX_DIAGNOSTICS mistakes the names are not searched, so that a long program stays fast.
     """
-    if part in names or len(scope.diagnostics) >= MOST_DIAGNOSTICS:
+    if part in names or len(scope.diagnostics) >= MAX_DIAGNOSTICS:
         return ""
     whole_names = [
         name for name in names if part in name.split("_") or _is_one_short_for_other(part, name)
@@ -184,7 +184,7 @@ def report_not_callable(scope: Scope, node: ast.Command) -> None:
         values
         and len(argument_texts) == 1
         and argument_texts[0].isdecimal()
-        and 1 < int(argument_texts[0][:9]) <= MOST_REPETITIONS
+        and 1 < int(argument_texts[0][:9]) <= MAX_REPETITIONS
     ):
         values["times"] = argument_texts[0]
         fix = f"LOOP({argument_texts[0]});{node.word};{BLOCK_ENDS['LOOP']}"

@@ -25,7 +25,7 @@ from tiniscript.base.words import (
     Word,
 )
 from tiniscript.diagnostics import codes
-from tiniscript.diagnostics.codes import MOST_DIAGNOSTICS, Diagnostic, Repair
+from tiniscript.diagnostics.codes import MAX_DIAGNOSTICS, Diagnostic, Repair
 from tiniscript.semantics import ir
 from tiniscript.semantics.comparisons import looks_ahead
 from tiniscript.semantics.driven_on import find_move_end
@@ -58,7 +58,7 @@ _TIME_AND_POWER = (0, 1)  # their places
 _NUMBER = re.compile(r"[0-9]+(\.[0-9]+)?|\.[0-9]+")
 _UNTIL_CLAUSE = re.compile(r"(?i)\s*\bUNTIL\b.*")  # an UNTIL with its condition
 _UNTIL_AT_END = re.compile(r"(?i)\bUNTIL[ \t]*(\([^()\n;]+\))[\s;]*$")
-_MOST_CHARACTERS_BACK = 200
+_MAX_CHARACTERS_BACK = 200
 _FEW_TIMES = [str(k) for k in range(2, 10)]  # numbers small enough to be repetitions or seconds
 _NAMED_VALUE = re.compile(r"(\w+)\s*=\s*([^=].*)")  # `size=20`
 # For each sensor's unit, the unit of a move of that size, and the factor.
@@ -180,7 +180,7 @@ class WrongCalls:
         }
         other_word = "R" if right_unit == "CM" else "F"
         values["other"] = other_word + self.scope.source[node.span][len(node.word) :]
-        is_among_first = len(self.scope.diagnostics) < MOST_DIAGNOSTICS
+        is_among_first = len(self.scope.diagnostics) < MAX_DIAGNOSTICS
         pairs = _MOVE_WITH_UNIT.finditer(self.scope.source.text) if is_among_first else ()
         wrong_pairs = [match for match in pairs if UNIT_OF[match[1].upper()] != match[3].upper()]
         for pair, other_pair in (wrong_pairs, wrong_pairs[::-1]) if len(wrong_pairs) == 2 else ():
@@ -383,7 +383,7 @@ def next_condition(source: Source, span: Span) -> str:
 
 def _until_match(source: Source, span: Span) -> re.Match[str] | None:
     """Return the UNTIL after an instruction, or alone before it like the start of a block."""
-    text_before = source.text[max(0, span.start - _MOST_CHARACTERS_BACK) : span.start]
+    text_before = source.text[max(0, span.start - _MAX_CHARACTERS_BACK) : span.start]
     return _UNTIL_CLAUSE.search(source[span]) or _UNTIL_AT_END.search(text_before)
 
 

@@ -11,7 +11,7 @@ import re
 from tiniscript.base.source import Span
 from tiniscript.base.words import OPPOSITE_MOVES, WORDS
 from tiniscript.diagnostics import codes
-from tiniscript.diagnostics.codes import MOST_DIAGNOSTICS
+from tiniscript.diagnostics.codes import MAX_DIAGNOSTICS
 from tiniscript.recovery.amounts import amount_values, is_amount
 from tiniscript.recovery.meanings import certain_concept, lexicon_meaning
 from tiniscript.semantics.comparisons import is_aside
@@ -26,7 +26,7 @@ _COMPARISON = re.compile(r"\w+\s*((?:<=|>=|<>|[<>=])\s*[\w.]+)")  # `> 5` of `X 
 _LEADING_COMPARISON = re.compile(
     r"[^<>=]{1,40}?\s*(?:<=|>=|<>|[<>=])(?=[^<>=]*$)"
 )  # `X =` of `X = 5`
-_MOST_CHARACTERS_BACK = 20  # characters before a name in which its word is looked for
+_MAX_CHARACTERS_BACK = 20  # characters before a name in which its word is looked for
 _EQUALITY_AT_END = re.compile(r"(\w+)\s*(?:=|<>)\s*$")  # `BUTTON = ` of `BUTTON = HIGH`
 _BEFORE_LOOP_COUNT = re.compile(r"(?i)\bLOOP[ \t]*\([ \t]*$")
 _BEFORE_FREQUENCY = re.compile(r"(?i)\bBEEP[ \t]*\([^(),]*,[ \t]*$")
@@ -44,7 +44,7 @@ class WrongValues:
             scope.report(codes.NO_VALUE, span, word=name)
             return
         concept = certain_concept(name) or ""
-        text_before = scope.source.text[max(0, span.start - _MOST_CHARACTERS_BACK) : span.start]
+        text_before = scope.source.text[max(0, span.start - _MAX_CHARACTERS_BACK) : span.start]
         is_variable = concept == "TIME" and _BEFORE_TIME.search(text_before) is not None
         if concept == "BUTTON" or name == "BUTTON":
             scope.report(codes.NO_BUTTON, span)
@@ -55,7 +55,7 @@ class WrongValues:
             if not self._has_example(span):
                 scope.report(codes.UNKNOWN_NAME, span, None, found=name, **amount_values)
             return
-        names = scope.names.items() if len(scope.diagnostics) < MOST_DIAGNOSTICS else ()
+        names = scope.names.items() if len(scope.diagnostics) < MAX_DIAGNOSTICS else ()
         known_names = [
             known_name for known_name, meaning in names if meaning.kind in ("sensor", "variable")
         ]
@@ -85,7 +85,7 @@ class WrongValues:
         sensors = [known_name for known_name, meaning in names if meaning.kind == "sensor"]
         if name == target or name in scope.assigned_names:
             if any(diagnostic.code is codes.USED_BEFORE_SET and diagnostic.values["name"] == name
-                   for diagnostic in scope.diagnostics[-MOST_DIAGNOSTICS:]):  # fmt: skip
+                   for diagnostic in scope.diagnostics[-MAX_DIAGNOSTICS:]):  # fmt: skip
                 return  # reported once
             scope.report_used_before_set(name, span, suggestion)
         else:

@@ -22,7 +22,7 @@ ATTENDED_S = 0.5  # a page that is silent for longer does not drive
 LEFT_S = 3.0  # a page that is silent for longer has left
 LATCH_S = 2.0  # time after a teacher's STOP in which uploads under way are refused
 POLL_INTERVAL_S = 0.02
-MOST_PENDING_NEWS = 1000  # news for a page that does not fetch them
+MAX_PENDING_NEWS = 1000  # news for a page that does not fetch them
 ASKED, CONFIRMED, SILENT = "asked", "confirmed", "silent"  # states of a teacher's STOP
 _DROPPABLE_EVENTS = ("SHOW", "TEXT", "PLACE")
 _VOID_ANSWER = {"failure": "stopped_elsewhere"}
@@ -196,7 +196,7 @@ class Attending:
     def _add_news(self, news: Json) -> None:
         self._news_count += 1
         self._news.append({**news, "number": self._news_count})
-        while len(self._news) > MOST_PENDING_NEWS:
+        while len(self._news) > MAX_PENDING_NEWS:
             droppable = next(
                 (
                     news_item

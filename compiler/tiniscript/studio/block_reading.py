@@ -32,7 +32,7 @@ from tiniscript.syntax.parser import ParsedText, parse
 
 LOOSE_PREFIX = "///"  # begins the lines of blocks that hang on nothing
 LOOSE_VALUE_PREFIX = "= "
-MOST_ROUNDS = 12  # most rounds of reading, after which every line is grey
+MAX_ROUNDS = 12  # most rounds of reading, after which every line is grey
 
 _LEFT_OUT = frozenset(("AND_LEFT", "OR_LEFT"))  # part kinds that mark the end of the left side
 
@@ -41,7 +41,7 @@ def read_blocks(text: str, kit: Kit) -> Form:
     """Return the blocks of any text. `kit` says which names are sensors."""
     lines = LINE_END.split(text)
     grey_lines: set[int] = set()
-    for _ in range(MOST_ROUNDS):
+    for _ in range(MAX_ROUNDS):
         source, parsed_text = _read_without(lines, grey_lines)
         mistake_spans = [
             diagnostic.span for diagnostic in parsed_text.diagnostics if diagnostic.is_mistake

@@ -16,7 +16,7 @@ from tiniscript.base.source import Edit, Source
 from tiniscript.bytecode.statements import statement_of, statement_starts
 from tiniscript.codegen.text.line import line_of
 from tiniscript.diagnostics.codes import Diagnostic
-from tiniscript.diagnostics.fixing import MOST_OFFERS, edits_of, edits_offered
+from tiniscript.diagnostics.fixing import MAX_OFFERS, edits_of, edits_offered
 from tiniscript.diagnostics.rendering import Message, message
 from tiniscript.library import source_map
 from tiniscript.library.compiling import Compilation, compile_source, fit_to_robot, text_of
@@ -188,7 +188,7 @@ def _findings(compilation: Compilation, language: str) -> tuple[Finding, ...]:
     """Return the messages; the first of those that name changes may have a button."""
     repairable_indexes = [
         k for k, diagnostic in enumerate(compilation.diagnostics) if edits_of(diagnostic)
-    ][:MOST_OFFERS]
+    ][:MAX_OFFERS]
     return tuple(
         Finding(
             message(diagnostic, compilation.source, language),

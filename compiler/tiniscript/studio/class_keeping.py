@@ -24,9 +24,9 @@ from tiniscript.base.files import LOCK_ENDING, read_limited, replace, settings_f
 Json = dict[str, Any]
 
 TEXT_CHARACTERS = 20_000  # most characters of a program
-MOST_PUPILS = 60
-MOST_WORKS = 120  # most works kept, for pupils present and absent
-MOST_LESSONS = 40
+MAX_PUPILS = 60
+MAX_WORKS = 120  # most works kept, for pupils present and absent
+MAX_LESSONS = 40
 FORM_VERSION = 1  # version of the file's form; others are not read
 SAME_LESSON_S = 3600.0  # pupils of a class that was seen last before must join again
 FILE_BYTES = 24_000_000  # bytes of all works; a character may take six bytes
@@ -51,7 +51,7 @@ class Work(NamedTuple):
             return None
         # The state in the form of the file.
         stored_text = text[:TEXT_CHARACTERS].encode("utf-8", "replace").decode()
-        return cls(stored_text, str(robot), tuple(lessons[:MOST_LESSONS]))
+        return cls(stored_text, str(robot), tuple(lessons[:MAX_LESSONS]))
 
 
 NOTHING = Work()

@@ -33,9 +33,9 @@ from tiniscript.lessons import catalogue
 from tiniscript.link.port_names import canonical_port
 from tiniscript.studio import recordings
 from tiniscript.studio.class_keeping import (
-    MOST_LESSONS,
-    MOST_PUPILS,
-    MOST_WORKS,
+    MAX_LESSONS,
+    MAX_PUPILS,
+    MAX_WORKS,
     NOTHING,
     Work,
     is_token,
@@ -50,7 +50,7 @@ from tiniscript.studio.rates import Rate
 from tiniscript.studio.robot_link import BadRequest, Json, robot_of, whole_number
 from tiniscript.studio.serving import REQUEST_BYTES
 
-OWN_NAME_CHARACTERS, MOST_COLOUR = 16, 31  # longest name and colour of a robot that a pupil names
+OWN_NAME_CHARACTERS, MAX_COLOUR = 16, 31  # longest name and colour of a robot that a pupil names
 
 
 class OwnRobot(NamedTuple):
@@ -65,7 +65,7 @@ class OwnRobot(NamedTuple):
         if not isinstance(data, dict) or not isinstance(data.get("name"), str):
             raise BadRequest
         name = printable(data["name"][:OWN_NAME_CHARACTERS])
-        return cls(name, whole_number(data, "colour", 0, MOST_COLOUR))
+        return cls(name, whole_number(data, "colour", 0, MAX_COLOUR))
 
 
 NO_OWN_ROBOT = OwnRobot()
@@ -112,7 +112,7 @@ class RunRequest:
         if not isinstance(text, str) or not isinstance(is_last, bool):
             raise BadRequest
         whole_number(request, "from", len(self.file_text), len(self.file_text))
-        if self.is_whole or len(self.file_text) + len(text) > recordings.MOST_BYTES:
+        if self.is_whole or len(self.file_text) + len(text) > recordings.MAX_BYTES:
             raise BadRequest
         self.file_text += text
         self.is_whole = is_last
@@ -209,7 +209,7 @@ CODE_LETTERS = 6  # a thousand million codes
 JOIN_BYTES = 1000
 PLACES_PER_ADDRESS = 3  # most pupils at one address; the teacher may allow more
 WORKS_PER_PLACE = 3  # most works for each pupil's place at one address
-MOST_ROBOTS = 40
+MAX_ROBOTS = 40
 TURN_S = 180
 SHORTEST_TURN_S, LONGEST_TURN_S = 10, 3600
 CONNECT_S = 10.0  # time for a page to take its turn
@@ -341,12 +341,12 @@ class Classroom:
         ):
             return {"failure": "class_crowded"}
         pupils = list(self._pupil_by_token.values())
-        if len(pupils) >= MOST_PUPILS and not self._give_place_away(now_s, SILENT_S, pupils):
+        if len(pupils) >= MAX_PUPILS and not self._give_place_away(now_s, SILENT_S, pupils):
             return {"failure": "class_full"}
         if returning_pupil is None:
             if self._work_count(address) >= WORKS_PER_PLACE * self._places_per_address:
                 return {"failure": "class_crowded"}
-            if self._work_count() >= MOST_WORKS:
+            if self._work_count() >= MAX_WORKS:
                 return {"failure": "class_full"}
             returning_pupil = KeptWork(
                 free_name(typed_name, self._names()), typed_name, NOTHING, new_token()
@@ -505,7 +505,7 @@ class Classroom:
             return
         del self._kept_work_by_key[kept_work.key]
         lessons = dict.fromkeys((*kept_work.work.lessons, *pupil.work.lessons))
-        pupil.work = kept_work.work._replace(lessons=tuple(lessons)[:MOST_LESSONS])
+        pupil.work = kept_work.work._replace(lessons=tuple(lessons)[:MAX_LESSONS])
         pupil.version += 1
 
     def _connect(self, pupil: Pupil, request: Json) -> Json:
@@ -687,7 +687,7 @@ class Classroom:
             elif action == "class_turn":
                 self._turn_s = whole_number(request, "seconds", SHORTEST_TURN_S, LONGEST_TURN_S)
             elif action == "class_places":
-                self._places_per_address = whole_number(request, "places", 1, MOST_PUPILS)
+                self._places_per_address = whole_number(request, "places", 1, MAX_PUPILS)
             elif action == "class_code":
                 self.code = _new_code()
             elif action == "class_hand_out":
@@ -783,7 +783,7 @@ class Classroom:
             for kept_work in self._kept_work_by_key.values()
         ):
             return
-        if self._work_count() >= MOST_WORKS:
+        if self._work_count() >= MAX_WORKS:
             raise BadRequest
         self._keep(KeptWork(work_name, work_name, work))
 
@@ -847,13 +847,13 @@ class Classroom:
         left out. All work of another lesson is kept, and pupils join with another code."""
         with self._lock:
             now_s = self._clock()
-            for row in _rows(state, "pupils")[:MOST_PUPILS]:
+            for row in _rows(state, "pupils")[:MAX_PUPILS]:
                 kept_work = _work_of_row(row, Work.of(row) or NOTHING)
                 if kept_work is not None and kept_work.token and kept_work.address:
                     self._admit(kept_work, kept_work.address, now_s)
             for row in _rows(state, "kept"):
                 kept_work = _work_of_row(row, Work.of(row))
-                if kept_work is not None and self._work_count() < MOST_WORKS:
+                if kept_work is not None and self._work_count() < MAX_WORKS:
                     if kept_work.recipient_token not in self._pupil_by_token:
                         kept_work.recipient_token = ""
                     self._keep(kept_work)
@@ -875,7 +875,7 @@ class Classroom:
                 with suppress(BadRequest):
                     self._handout = Handout.of(handout, handout["key"])
             with suppress(BadRequest):
-                self._places_per_address = whole_number(state, "places", 1, MOST_PUPILS)
+                self._places_per_address = whole_number(state, "places", 1, MAX_PUPILS)
             if not self._is_turn_given:
                 with suppress(BadRequest):
                     self._turn_s = whole_number(state, "turn_s", SHORTEST_TURN_S, LONGEST_TURN_S)
@@ -890,7 +890,7 @@ class Classroom:
                 same_robot.take_back()
                 self._robots.remove(same_robot)
         if is_in_class and not same_robots:
-            if len(self._robots) >= MOST_ROBOTS:
+            if len(self._robots) >= MAX_ROBOTS:
                 raise BadRequest
             self._robots.append(class_robot)
 

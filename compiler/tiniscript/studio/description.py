@@ -15,7 +15,7 @@ from tiniscript.base.limits import PARAMETERS
 from tiniscript.base.words import WORDS
 from tiniscript.lessons import catalogue
 from tiniscript.library import opening
-from tiniscript.link.messages import MOST_BREAKPOINTS, NAME_BYTES, STOP_BYTES
+from tiniscript.link.messages import MAX_BREAKPOINTS, NAME_BYTES, STOP_BYTES
 from tiniscript.link.remote import REPEAT_MS
 from tiniscript.robots.kinematics import Pose
 from tiniscript.robots.profile import Robot
@@ -23,7 +23,7 @@ from tiniscript.studio import class_keeping
 from tiniscript.studio.world_form import form_of, limits
 from tiniscript.virtual import worlds
 from tiniscript.virtual.driving import Hull
-from tiniscript.virtual.score import MOST_STARS, Score
+from tiniscript.virtual.score import MAX_STARS, Score
 
 
 def description() -> dict[str, Any]:
@@ -52,15 +52,15 @@ def description() -> dict[str, Any]:
             "long_quiet_ms": round(opening.LONG_QUIET_S * 1000),
             "confirm_ms": round(opening.CONFIRM_TIMEOUT_S * 1000),
             "name_bytes": NAME_BYTES,
-            "most_breakpoints": MOST_BREAKPOINTS,
+            "most_breakpoints": MAX_BREAKPOINTS,
             "keys_every_ms": REPEAT_MS,
         },
         "class": {
             "form": class_keeping.FORM_VERSION,
             "file_bytes": class_keeping.FILE_BYTES,
-            "most_works": class_keeping.MOST_WORKS,
+            "most_works": class_keeping.MAX_WORKS,
             "text_characters": class_keeping.TEXT_CHARACTERS,
-            "most_lessons": class_keeping.MOST_LESSONS,
+            "most_lessons": class_keeping.MAX_LESSONS,
         },
         "worlds": [form_of(worlds.load(name)) for name in worlds.names()],
         "world_limits": limits(),
@@ -74,7 +74,7 @@ def _stars() -> dict[str, dict[str, int]]:
     task_worlds = [name for name in worlds.names() if Score(worlds.load(name)).state()]
     return {
         "lessons": {lesson.name: lesson.world_count for lesson in lessons},
-        "worlds": dict.fromkeys(task_worlds, MOST_STARS),
+        "worlds": dict.fromkeys(task_worlds, MAX_STARS),
     }
 
 

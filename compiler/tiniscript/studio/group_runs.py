@@ -17,7 +17,7 @@ from typing import NamedTuple
 from tiniscript.studio.entrances import new_token
 from tiniscript.studio.robot_link import Json
 
-MOST_BYTES = 2000  # most bytes of waiting events, as JSON
+MAX_BYTES = 2000  # most bytes of waiting events, as JSON
 _DROPPABLE_EVENTS = ("SHOW", "TEXT")
 _EVENTS_OF_RUN = (*_DROPPABLE_EVENTS, "PLACE", "MISSED")
 _ENDING_EVENTS = ("DONE", "FAULT", "STOPPED", "RESTARTED", "LOST")
@@ -106,7 +106,7 @@ class GroupRuns:
         if name == "PLACE":
             self._rows = [row for row in self._rows if row.news["event"] != "PLACE"]
         self._rows.append(_Row(driver, news, len(json.dumps(news))))
-        while len(self._rows) > 1 and sum(row.size for row in self._rows) > MOST_BYTES:
+        while len(self._rows) > 1 and sum(row.size for row in self._rows) > MAX_BYTES:
             droppable_rows = (
                 row for row in self._rows[:-1] if row.news["event"] in _DROPPABLE_EVENTS
             )

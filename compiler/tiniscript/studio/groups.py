@@ -25,7 +25,7 @@ from tiniscript.studio.entrances import new_token
 from tiniscript.studio.group_runs import GroupRuns
 from tiniscript.studio.names import are_alike, plain_name
 from tiniscript.studio.rates import Rate
-from tiniscript.studio.robot_link import MOST_COUNT, BadRequest, Json, whole_number
+from tiniscript.studio.robot_link import MAX_COUNT, BadRequest, Json, whole_number
 from tiniscript.together.form import (
     BAD,
     TOO_LONG,
@@ -43,24 +43,24 @@ from tiniscript.together.form import (
 )
 from tiniscript.together.journal import Journal
 from tiniscript.together.layout import Unparsed, parse_tree, text_of
-from tiniscript.together.operations import MOST_CHARACTERS
-from tiniscript.together.ordering import MOST_PAGES, SharedProgram
+from tiniscript.together.operations import MAX_CHARACTERS
+from tiniscript.together.ordering import MAX_PAGES, SharedProgram
 from tiniscript.together.tree import Tree
 
-MOST_MEMBERS = 4
-MOST_GROUPS = 30
-MOST_FOUNDED = 3  # groups with a program, by one pupil
-MOST_HELD_S = 8.0  # longest time that a request is held; slower connections are closed
+MAX_MEMBERS = 4
+MAX_GROUPS = 30
+MAX_FOUNDED = 3  # groups with a program, by one pupil
+MAX_HELD_S = 8.0  # longest time that a request is held; slower connections are closed
 POLL_INTERVAL_S = 0.2  # interval between two looks at the robot's events
 ABSENCE_S = 20.0  # a page silent for longer loses its place
-MOST_CHANGES = 50  # most changes in a request
+MAX_CHANGES = 50  # most changes in a request
 CHANGE_BYTES = 64_000  # most bytes of a change as JSON; a whole program is smaller
 BYTES_PER_COST = 2000  # a change costs one for each of these that it begins
 # Burst and rate of a pupil's changes: fast pupils make one a second, and a large one takes 40 ms.
 CHANGE_RATE = (80, 4)
 MARK_COUNT = 4  # colours of pupils; the next one is the teacher's
 TEACHER = "teacher"  # no pupil has this token
-MOST_HISTORY_LINES = 200  # changes that the teacher's page shows
+MAX_HISTORY_LINES = 200  # changes that the teacher's page shows
 _NODE_ID = re.compile(r"[a-z0-9.]{0,24}")
 _PAGE_NAME = re.compile(r"m[0-9]{1,6}")
 
@@ -171,7 +171,7 @@ class Groups:
     def _create(self, token: str, name: str, text: str) -> Group | None:
         """Return a new group; None if there are too many. Raises Unparsed, Refused."""
         own_groups = [group for group in self._group_by_key.values() if group.founder == token]
-        if len(self._group_by_key) >= MOST_GROUPS or len(own_groups) >= MOST_FOUNDED:
+        if len(self._group_by_key) >= MAX_GROUPS or len(own_groups) >= MAX_FOUNDED:
             return None
         return self._add_group(name, token, new_token(), _tree_of(text))
 
@@ -191,7 +191,7 @@ class Groups:
             member = group.member_by_token.get(token)
             if member is None:
                 pupils = group.pupils
-                if token != TEACHER and len(pupils) >= MOST_MEMBERS:
+                if token != TEACHER and len(pupils) >= MAX_MEMBERS:
                     silent_member = min(pupils, key=lambda pupil: pupil.heard_s)
                     if now_s - silent_member.heard_s <= ABSENCE_S:
                         return {"failure": "group_full"}
@@ -205,7 +205,7 @@ class Groups:
                     f"m{1 + max((_page_number(page) for page in group.owner_of_page), default=0)}"
                 )
                 group.owner_of_page[old_page] = token
-                for page in list(group.owner_of_page)[:-MOST_PAGES]:
+                for page in list(group.owner_of_page)[:-MAX_PAGES]:
                     del group.owner_of_page[page]
             member.page, member.heard_s, member.name = old_page, now_s, name
             member.stop_count = 0  # a page that was opened anew counts from 1
@@ -240,8 +240,8 @@ class Groups:
         group = self.group_of(token)
         if group is None:
             return {"left": True}
-        since_number = whole_number(request, "since", -1, MOST_COUNT)
-        seen_version = whole_number(request, "saw", 0, MOST_COUNT, 0)
+        since_number = whole_number(request, "since", -1, MAX_COUNT)
+        seen_version = whole_number(request, "saw", 0, MAX_COUNT, 0)
         epoch, changes = request.get("epoch"), request.get("changes", [])
         if not isinstance(epoch, str) or not isinstance(changes, list):
             raise BadRequest
@@ -293,7 +293,7 @@ class Groups:
         member.hold_count += 1
         hold_number = member.hold_count
         group.condition.notify_all()
-        end_s = monotonic() + MOST_HELD_S
+        end_s = monotonic() + MAX_HELD_S
         while (
             (group.program.number, group.version, member.hold_count)
             == (since_number, seen_version, hold_number)
@@ -305,7 +305,7 @@ class Groups:
 
     def _decide(self, group: Group, member: Member, changes: list[object]) -> bool:
         """Decide on changes; return whether all of them were looked at. Raises BadRequest."""
-        if len(changes) > MOST_CHANGES:
+        if len(changes) > MAX_CHANGES:
             raise BadRequest
         for row in changes:
             uid = row.get("uid") if isinstance(row, dict) else None
@@ -398,7 +398,7 @@ class Groups:
                     group.name_of_page.get(_page_name(taken_change), "?"),
                     ", ".join(map(_operation_text, taken_change.operations)),
                 )
-                for taken_change in reversed(group.program.taken_changes[-MOST_HISTORY_LINES:])
+                for taken_change in reversed(group.program.taken_changes[-MAX_HISTORY_LINES:])
             ]
         return [f"{member_name}: {action}" for member_name, action in actions]
 
@@ -435,7 +435,7 @@ class Groups:
                 key, name, founder = row.get("key"), row.get("name"), row.get("founder")
                 group_name = plain_name(name) if isinstance(name, str) else ""
                 is_key = isinstance(key, str) and re.fullmatch("[0-9a-f]{32}", key) is not None
-                if not is_key or not group_name or len(self._group_by_key) >= MOST_GROUPS:
+                if not is_key or not group_name or len(self._group_by_key) >= MAX_GROUPS:
                     continue
                 group = self._add_group(group_name, str(founder), str(key), None)
                 if group is None:
@@ -471,7 +471,7 @@ class Groups:
         if (
             is_here(token)
             and _PAGE_NAME.fullmatch(page)
-            and len(group.member_by_token) < MOST_MEMBERS
+            and len(group.member_by_token) < MAX_MEMBERS
         ):
             mark = len(group.member_by_token)
             group.member_by_token[token] = Member(token, name, page, self._clock(), mark)
@@ -486,7 +486,7 @@ def _tree_of(text: str) -> Tree:
     numbers = count(1)
     rows, _ = split_loose(LINE_END.split(text))
     tree = parse_tree("\n".join(rows), lambda: f"i.{next(numbers)}")
-    if len(text_of(tree)) > MOST_CHARACTERS:
+    if len(text_of(tree)) > MAX_CHARACTERS:
         raise Refused(TOO_LONG)
     return tree_of(tree.snapshot())
 

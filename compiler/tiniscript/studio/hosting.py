@@ -19,13 +19,13 @@ from tiniscript.link import known_ports, ports
 from tiniscript.link.port_names import canonical_port, exists
 from tiniscript.studio.attending import LATCH_S
 from tiniscript.studio.hosted_robot import PARTING_TIMEOUT_S, HostedRobot
-from tiniscript.studio.robot_link import MOST_COUNT, BadRequest, Json, robot_of, whole_number
+from tiniscript.studio.robot_link import MAX_COUNT, BadRequest, Json, robot_of, whole_number
 from tiniscript.virtual import directory
 
 NAME_CHARACTERS = 64  # most characters of a page's name
 PORT_CHARACTERS = 300
-MOST_ROBOTS = 40
-MOST_REQUESTS = 8  # requests at a time
+MAX_ROBOTS = 40
+MAX_REQUESTS = 8  # requests at a time
 DESCRIPTION_CHARACTERS = 200
 _OVER_ANSWER: Json = {"news": [{"over": "left", "said": "", "number": 0}]}
 
@@ -62,15 +62,15 @@ class Hosting:
             stop_count = 0
             try:
                 if request.get("tab", page) == robot.tab:
-                    stop_count = whole_number(request, "stops", 0, MOST_COUNT, 0)
+                    stop_count = whole_number(request, "stops", 0, MAX_COUNT, 0)
             finally:  # whatever it counts
                 robot.attending.stop(stop_count)
         if _connection(page, request) != (robot.tab, robot.connection):
             return _OVER_ANSWER
         if action == "leave":
             robot.leave()
-        seen_number = whole_number(request, "seen", 0, MOST_COUNT, 0)
-        stop_count = whole_number(request, "stops", 0, MOST_COUNT, 0)
+        seen_number = whole_number(request, "seen", 0, MAX_COUNT, 0)
+        stop_count = whole_number(request, "stops", 0, MAX_COUNT, 0)
         return {"news": robot.attending.on_beat(_requests(request), seen_number, stop_count)}
 
     def robot_of(self, page: str) -> HostedRobot | None:
@@ -117,7 +117,7 @@ class Hosting:
                 return {"failure": "other_tab"}
             for rival in rivals:  # no page refers to it any more
                 rival.leave()
-            if sum(map(_is_driving, self._robot_by_page.values())) >= MOST_ROBOTS:
+            if sum(map(_is_driving, self._robot_by_page.values())) >= MAX_ROBOTS:
                 return {"failure": "too_many"}
             if page_robot is not None:
                 self._parting_robots.append(page_robot)
@@ -216,7 +216,7 @@ def _is_driving(robot: HostedRobot) -> bool:
 def _connection(page: str, request: Json) -> tuple[str, int]:
     """Return the page of a connection, and its number. Raises BadRequest."""
     tab = _text(request, "tab", NAME_CHARACTERS) if "tab" in request else page
-    return tab, whole_number(request, "connection", 0, MOST_COUNT, 0)
+    return tab, whole_number(request, "connection", 0, MAX_COUNT, 0)
 
 
 def port_of(request: Json) -> str:
@@ -236,7 +236,7 @@ def _text(request: Json, name: str, most_characters: int) -> str:
 
 def _requests(request: Json) -> list[Json]:
     requests: Any = request.get("asked", [])
-    if not isinstance(requests, list) or len(requests) > MOST_REQUESTS:
+    if not isinstance(requests, list) or len(requests) > MAX_REQUESTS:
         raise BadRequest
     if not all(isinstance(request, dict) for request in requests):
         raise BadRequest

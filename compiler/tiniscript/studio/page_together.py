@@ -19,7 +19,7 @@ from tiniscript.together.page import Page
 from tiniscript.together.tree import ARM, NOTE, Tree, first_word
 
 Json = dict[str, Any]
-MOST_CHANGES = 50  # most changes in a request to the class
+MAX_CHANGES = 50  # most changes in a request to the class
 
 
 class ShownBlocks(NamedTuple):
@@ -201,7 +201,7 @@ def _answer(state: State, text: str, carets: tuple[int, int] | None) -> Json:
         "changes": changes(text, new_text, carets),
         "ids": page.ids_of_lines(),
         "drafts": page.lines_of_drafts(),
-        "pending": [data_of_change(change) for change in page.pending_changes[:MOST_CHANGES]],
+        "pending": [data_of_change(change) for change in page.pending_changes[:MAX_CHANGES]],
         "since": -1 if page.is_astray else page.number,
         "epoch": page.epoch,
         "told": len(page.refusals),

@@ -20,7 +20,7 @@ from tiniscript.studio.recordings import (
     CUT_EVENTS,
     HALT,
     HELD,
-    MOST_MS,
+    MAX_MS,
     UNREAD,
     BadRecording,
     Recording,
@@ -31,7 +31,7 @@ from tiniscript.virtual import worlds
 from tiniscript.virtual.robot import Settings
 from tiniscript.virtual.world import World
 
-LEAST_TOLERANCE_MS, TOLERANCE = 250, 0.05  # tolerance in ms, and as a share of the time
+MIN_TOLERANCE_MS, TOLERANCE = 250, 0.05  # tolerance in ms, and as a share of the time
 STEP_MS = 100
 NO_SENSOR = -1
 EARLY_MS = 10  # half of the time between two checks: no clock is more exact
@@ -396,7 +396,7 @@ class PlayedRun(Simulation):
             return recording.end_ms + _tolerance_ms(recording.end_ms)
         virtual_rows = [row for row in self._virtual_rows if _is_program_event(row)]
         if not virtual_rows:
-            return MOST_MS
+            return MAX_MS
         late_ms = virtual_rows[0].ms - recorded_rows[0].ms
         return recording.end_ms + late_ms + _tolerance_ms(recording.end_ms + late_ms)
 
@@ -484,4 +484,4 @@ def _reading_value(text: str) -> int:
 
 
 def _tolerance_ms(ms: int) -> int:
-    return LEAST_TOLERANCE_MS + round(ms * TOLERANCE)
+    return MIN_TOLERANCE_MS + round(ms * TOLERANCE)

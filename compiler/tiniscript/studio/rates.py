@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-MOST_NAMES = 1000  # most names kept; the least recent is forgotten first
+MAX_NAMES = 1000  # most names kept; the least recent is forgotten first
 
 
 class Rate:
@@ -25,7 +25,7 @@ class Rate:
         amount = self._amount_left(name, now_s)
         is_left = amount >= cost
         self._amounts_left.pop(name, None)
-        if len(self._amounts_left) >= MOST_NAMES:
+        if len(self._amounts_left) >= MAX_NAMES:
             del self._amounts_left[next(iter(self._amounts_left))]
         self._amounts_left[name] = (amount - cost if is_left else amount, now_s)
         return is_left

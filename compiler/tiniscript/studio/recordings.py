@@ -27,11 +27,11 @@ HEADER_KEY = "tiniscript_run"
 # Key in the header of version 0.3.0 and earlier, without a program.
 OLD_HEADER_KEY = "tiniscript_recording"
 VERSION = 1
-MOST_BYTES = 1_000_000
-MOST_ROW_BYTES = 600_000  # most bytes of rows, after which the recording ends
-MOST_MS = 600_000
-MOST_TEXT = 200_000  # bytes of a program
-MOST_READINGS = 10_000
+MAX_BYTES = 1_000_000
+MAX_ROW_BYTES = 600_000  # most bytes of rows, after which the recording ends
+MAX_MS = 600_000
+MAX_TEXT = 200_000  # bytes of a program
+MAX_READINGS = 10_000
 MS_MODULUS = 1 << 16  # modulus of the time in a robot's readings
 
 VIRTUAL, REAL = "virtual", "real"
@@ -141,7 +141,7 @@ class Rows:
                 return False
             self._last_values[name] = value
         self._byte_count += len(encode_row(row)) + 1
-        self.is_full = self.is_full or self._byte_count > MOST_ROW_BYTES or row.ms > MOST_MS
+        self.is_full = self.is_full or self._byte_count > MAX_ROW_BYTES or row.ms > MAX_MS
         if self.is_full:
             return False
         self.rows.append(row)
@@ -217,7 +217,7 @@ def encode(header: str, rows: Iterable[Row], end_ms: int) -> str:
 
 def decode(data: bytes) -> Recording:
     """Return the recording in a file. Raises BadRecording."""
-    if len(data) > MOST_BYTES:
+    if len(data) > MAX_BYTES:
         raise BadRecording("too_long")
     lines = _decode_text(data).rstrip("\r\n").split("\n")
     fields = _parse(lines[0], 1, dict)
@@ -236,7 +236,7 @@ def decode(data: bytes) -> Recording:
         if row.ms < last_ms and not is_late:
             raise BadRecording("unreadable", number)
         last_ms = last_ms if is_late else row.ms
-        if row.ms > MOST_MS:
+        if row.ms > MAX_MS:
             raise BadRecording("too_long", number)
         if rows and not recording.is_virtual and rows[-1].event in CUT_EVENTS and row.event != END:
             raise BadRecording("unreadable", number)
@@ -258,7 +258,7 @@ def _parse_header(fields: dict[str, Any]) -> Recording:
         fields.get(HEADER_KEY) != VERSION
         or robot_kind not in (VIRTUAL, REAL)
         or not isinstance(text, str)
-        or len(text.encode("utf-8", "replace")) > MOST_TEXT
+        or len(text.encode("utf-8", "replace")) > MAX_TEXT
         or not isinstance(robot, str)
         or not _matches(_PROGRAM, fields.get("program"))
         or not _matches(_KIT, fields.get("kit"))
@@ -316,7 +316,7 @@ def _parse_readings(data: object, robot: Robot) -> dict[int, list[int]]:
     readings: dict[int, list[int]] = {}
     for name, values in data.items() if isinstance(data, dict) else ():
         number = numbers.get(name)
-        if number is None or not isinstance(values, list) or not 0 < len(values) <= MOST_READINGS:
+        if number is None or not isinstance(values, list) or not 0 < len(values) <= MAX_READINGS:
             raise BadRecording("unreadable")
         device = robot.kit.readings[number]
         if any(

@@ -33,10 +33,10 @@ from tiniscript.link.connection import (
 )
 from tiniscript.link.messages import (
     BREAKPOINTS,
-    MOST_BALANCE,
-    MOST_BREAKPOINTS,
-    MOST_LEAST,
-    MOST_PAD,
+    MAX_BALANCE,
+    MAX_BREAKPOINTS,
+    MAX_LEAST,
+    MAX_PAD,
     NAME_BYTES,
     READINGS,
     REMOTE_KEYS,
@@ -68,11 +68,11 @@ T = TypeVar("T")
 
 LIMIT_MS = EXCHANGE_TIMEOUT_MS  # timeout of a known robot that is silent or busy saving
 LONGEST_LIMIT_MS = 20_000
-MOST_WAITING = 8  # requests at a time
+MAX_WAITING = 8  # requests at a time
 TEXT_CHARACTERS = 200
-MOST_EVENTS = 200  # most events at a time
-MOST_COUNT = 2**31
-MOST_PLACE = 0xFFFF  # an offset in a program's code
+MAX_EVENTS = 200  # most events at a time
+MAX_COUNT = 2**31
+MAX_PLACE = 0xFFFF  # an offset in a program's code
 
 
 class BadRequest(Exception):
@@ -122,14 +122,14 @@ class RobotLink:
 
         Raises BadRequest, ConnectionLost.
         """
-        number, action = whole_number(request, "id", 0, MOST_COUNT), request.get("do")
+        number, action = whole_number(request, "id", 0, MAX_COUNT), request.get("do")
         if action == "stop":
             self.stop()
             self._answers.append({"id": number, "ok": True})
             return
         if not isinstance(action, str) or action not in _MAKERS:
             raise BadRequest
-        if action != "keys" and sum(not item.is_keys for item in self._requests) >= MOST_WAITING:
+        if action != "keys" and sum(not item.is_keys for item in self._requests) >= MAX_WAITING:
             raise BadRequest
         make_request = _MAKERS[action](request)
         limit_ms = whole_number(request, "limit_ms", 1, LONGEST_LIMIT_MS, LIMIT_MS)
@@ -162,7 +162,7 @@ class RobotLink:
         """
         news, self._answers = self._answers, []
         news += self._outcomes()
-        for _ in range(MOST_EVENTS):
+        for _ in range(MAX_EVENTS):
             event = self._connection.event(0 if news else timeout_s)
             news += self._outcomes()  # an answer is there before the events that follow from it
             if event is None:
@@ -368,8 +368,8 @@ def _trim(request: Json) -> _Make:
         fields.get("is_exchanged") is True,
         fields.get("is_left_reversed") is True,
         fields.get("is_right_reversed") is True,
-        whole_number(fields, "balance", -MOST_BALANCE, MOST_BALANCE),
-        whole_number(fields, "least", 0, MOST_LEAST),
+        whole_number(fields, "balance", -MAX_BALANCE, MAX_BALANCE),
+        whole_number(fields, "least", 0, MAX_LEAST),
     )
     return lambda session: session.trim(trim.data())
 
@@ -377,7 +377,7 @@ def _trim(request: Json) -> _Make:
 def _keys(request: Json) -> _Make:
     keys = whole_number(request, "keys", 0, (1 << len(REMOTE_KEYS)) - 1)
     state = RemoteState(
-        keys, *(whole_number(request, axis, -MOST_PAD, MOST_PAD) for axis in ("x", "y"))
+        keys, *(whole_number(request, axis, -MAX_PAD, MAX_PAD) for axis in ("x", "y"))
     )
     return lambda session: session.press(*state)
 
@@ -386,8 +386,8 @@ def _break(request: Json) -> _Make:
     places = request.get("places")
     if (
         not isinstance(places, list)
-        or len(places) > MOST_BREAKPOINTS
-        or not all(type(place) is int and 0 <= place <= MOST_PLACE for place in places)
+        or len(places) > MAX_BREAKPOINTS
+        or not all(type(place) is int and 0 <= place <= MAX_PLACE for place in places)
     ):
         raise BadRequest
     return lambda session: session.break_at(places)

@@ -87,8 +87,8 @@ ENTER_BYTES = 200  # most bytes of a request with a code
 HEAD_BYTES = 16_384  # most bytes of a request's head
 REQUEST_BYTES = 200_000  # the largest program has 32,781 bytes, and two digits for each
 # At a time; one more, and one is closed, of the address that has most. A browser has six.
-MOST_CONNECTIONS = 64
-MOST_CLASS_CONNECTIONS = 400
+MAX_CONNECTIONS = 64
+MAX_CLASS_CONNECTIONS = 400
 HTML_START = b'<html lang="en"'
 
 Robots = Callable[[Json], Json]  # raises BadRequest
@@ -212,7 +212,7 @@ class Server(ThreadingHTTPServer):
             name: value for name, value in HEADERS.items() if host == HOST or name != SECURE_ONLY
         }
         self.entrances = Entrances()
-        self.most_connections = MOST_CONNECTIONS if pupils is None else MOST_CLASS_CONNECTIONS
+        self.most_connections = MAX_CONNECTIONS if pupils is None else MAX_CLASS_CONNECTIONS
         self._lock = Lock()
         # The client with the latest request is last.
         self._connections: dict[socket.socket, _Client] = {}

@@ -26,7 +26,7 @@ PUSH_MS = 60
 FAULT_MS = 500  # time for a robot to report a fault
 NONCE = 1  # the same program makes the same run
 PART, BREAKPOINT = 1, 2  # marks in a program's code
-MOST_CODE = 1 << 16  # bytes
+MAX_CODE = 1 << 16  # bytes
 REPEAT_GAP_MS = HOLD_MS // 10  # shortest time before held keys are sent again
 
 
@@ -114,10 +114,10 @@ class Simulation:
         return self.robot.firmware.held_at
 
     def _mark_code(self) -> None:
-        marks = bytearray(MOST_CODE)
+        marks = bytearray(MAX_CODE)
         for offsets, bit in ((self.marks.part_offsets, PART), (self.marks.breakpoints, BREAKPOINT)):
             for offset in offsets:
-                if 0 <= offset < MOST_CODE:
+                if 0 <= offset < MAX_CODE:
                     marks[offset] |= bit
         self.robot.firmware.mark(bytes(marks))
 

@@ -25,7 +25,7 @@ from tiniscript.studio.block_speech import blocks_of, codes_in, mark_code
 
 Json = dict[str, Any]
 TOGETHER_MODULE = "tiniscript.studio.page_together"
-MOST_BLOCKS = 1500  # most blocks that a page can move around
+MAX_BLOCKS = 1500  # most blocks that a page can move around
 
 
 def answer(request: str, data: bytes = b"") -> str:
@@ -106,7 +106,7 @@ def _blocks(fields: Json, data: bytes) -> Json:
     if "first" in fields:
         form = first_blocks(form, fields["first"])
     size = size_of(form)
-    return {"size": size} if size > MOST_BLOCKS else {"size": size, **data_of(form)}
+    return {"size": size} if size > MAX_BLOCKS else {"size": size, **data_of(form)}
 
 
 def _text(fields: Json, data: bytes) -> Json:

@@ -13,7 +13,7 @@ from tiniscript.base.fixed_point import ONE
 from tiniscript.base.languages import SOURCE_LANGUAGE, ByLanguage, languages
 from tiniscript.virtual.geometry import Point
 from tiniscript.virtual.world import World
-from tiniscript.virtual.worlds import LARGEST_CM, MOST_PARTS, MOST_POINTS, MOST_RIVALS, MOST_SECONDS
+from tiniscript.virtual.worlds import LARGEST_CM, MAX_PARTS, MAX_POINTS, MAX_RIVALS, MAX_SECONDS
 
 KINDS = ("walls", "boxes", "lines", "lamps", "flags", "rings", "rivals")
 DECIMALS = 3  # most decimals in a world's file
@@ -23,11 +23,11 @@ Form = dict[str, Any]
 def limits() -> dict[str, int]:
     """Return the limits of a world: parts of each kind, points of a part, and numbers."""
     return {
-        "parts": MOST_PARTS,
-        "rivals": MOST_RIVALS,
-        "points": MOST_POINTS,
+        "parts": MAX_PARTS,
+        "rivals": MAX_RIVALS,
+        "points": MAX_POINTS,
         "cm": LARGEST_CM // ONE,
-        "seconds": MOST_SECONDS // ONE,
+        "seconds": MAX_SECONDS // ONE,
     }
 
 

@@ -27,8 +27,8 @@ from tiniscript.syntax.lexer import Token
 from tiniscript.syntax.reporter import Reporter
 
 HEADERS = frozenset(BLOCK_ENDS) - {"DEF", "TASK"}  # words with brackets: IF, LOOP, WHILE, WHEN
-ENDS = {end: word for word, end in BLOCK_ENDS.items()}  # ENDIF: IF …
-ENDS |= {alias: ENDS[end] for alias, end in ALIASES.items()}
+WORD_OF_END = {end: word for word, end in BLOCK_ENDS.items()}  # ENDIF: IF …
+WORD_OF_END |= {alias: WORD_OF_END[end] for alias, end in ALIASES.items()}
 
 
 class Block:

@@ -13,7 +13,7 @@ from tiniscript.base.source import Source, Span
 from tiniscript.base.words import BLOCK_ENDS, WORDS, Word
 from tiniscript.diagnostics import codes
 from tiniscript.syntax.ast import Argument
-from tiniscript.syntax.blocks import ENDS, Block, Blocks
+from tiniscript.syntax.blocks import WORD_OF_END, Block, Blocks
 from tiniscript.syntax.expressions import ExpressionParser
 from tiniscript.syntax.lexer import END, WORD, Scan, Token
 from tiniscript.syntax.operators import Postfix
@@ -157,5 +157,5 @@ class _Line(Parser):
 _KINDS = {
     **dict.fromkeys(BLOCK_ENDS, "open"),
     **dict.fromkeys(("ELSE", "ELSEIF"), "arm"),
-    **dict.fromkeys(ENDS, "end"),
+    **dict.fromkeys(WORD_OF_END, "end"),
 }

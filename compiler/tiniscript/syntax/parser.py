@@ -34,7 +34,7 @@ from tiniscript.base.source import Edit, Source, Span
 from tiniscript.base.words import BLOCK_ENDS, WORDS, Word
 from tiniscript.diagnostics import codes
 from tiniscript.syntax.ast import Argument, Assign, Break, Command, Parameter, Program
-from tiniscript.syntax.blocks import ENDS, HEADERS, Blocks
+from tiniscript.syntax.blocks import HEADERS, WORD_OF_END, Blocks
 from tiniscript.syntax.cursor import INSTRUCTION_ENDS, Cursor
 from tiniscript.syntax.expressions import ExpressionParser
 from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, WORD, Scan, Token, scan
@@ -79,7 +79,7 @@ class Parser:
         start = self.setup()
         while (kind := tokens[cursor.i].kind) is not END and len(
             diagnostics
-        ) <= codes.MOST_DIAGNOSTICS:
+        ) <= codes.MAX_DIAGNOSTICS:
             if kind is NEWLINE or kind == ";":
                 cursor.i += 1
                 continue
@@ -310,7 +310,7 @@ class Parser:
 
     def close(self, word: Token) -> None:
         """End the block that a word ends, and those that are still open in it."""
-        blocks, begin_word = self.blocks, ENDS[word.text]
+        blocks, begin_word = self.blocks, WORD_OF_END[word.text]
         if not any(block.word == begin_word for block in blocks.open_blocks):
             if self.merge_swapped_ends(word):
                 return
@@ -352,7 +352,7 @@ class Parser:
         ends_with_depth = (
             each_entry
             for each_entry in self.early_ends
-            if ENDS[diagnostics[each_entry[0]].values["right"]] == ENDS[late_end.text]
+            if WORD_OF_END[diagnostics[each_entry[0]].values["right"]] == WORD_OF_END[late_end.text]
         )
         entry = next((each_entry for each_entry in ends_with_depth if each_entry[1] == depth), None)
         if entry is None:
@@ -426,7 +426,7 @@ class Parser:
 # of this one changes what a rule calls, and no rule.
 _RULES: dict[str, Callable[[Parser, Token], None]] = {
     **dict.fromkeys(HEADERS, Parser.header),
-    **dict.fromkeys(ENDS, Parser.block_end),
+    **dict.fromkeys(WORD_OF_END, Parser.block_end),
     "DEF": Parser.definition,
     "TASK": Parser.task,
     "BREAK": Parser.leave,

@@ -12,7 +12,7 @@ from tiniscript.syntax.lexer import Token
 
 _DEF_END = re.compile(r"(?i)\bEND_?DEF\b")
 _PLACEHOLDER_NAME = "SIZE"  # name that a message translates
-_MOST_CHARACTERS = 60  # characters of an instruction that a message shows
+_MAX_CHARACTERS = 60  # characters of an instruction that a message shows
 
 
 def hints_of_use(source: Source, number: Token) -> dict[str, str]:
@@ -27,6 +27,6 @@ def hints_of_use(source: Source, number: Token) -> dict[str, str]:
         instruction = match[0].partition("//")[0].strip()
         pattern = rf"(?<![\w.]){re.escape(number.text)}(?![\w.])"
         renamed_instruction = re.sub(pattern, _PLACEHOLDER_NAME, instruction.upper(), count=1)
-        if renamed_instruction != instruction.upper() and len(instruction) <= _MOST_CHARACTERS:
+        if renamed_instruction != instruction.upper() and len(instruction) <= _MAX_CHARACTERS:
             return {"number": number.text, "inside": renamed_instruction}
     return {}

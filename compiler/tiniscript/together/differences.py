@@ -34,7 +34,7 @@ from tiniscript.together.tree import (
     first_word,
 )
 
-MOST_PAIRS = 40_000  # pairs of rows; above this, only equal rows are aligned
+MAX_PAIRS = 40_000  # pairs of rows; above this, only equal rows are aligned
 _BLOCK_FAMILIES = {"LOOP": "round", "WHILE": "round", "TASK": "task", "WHEN": "task"}
 _WORDS = re.compile(r"\w+|[^\w\s]")
 # The similarity of two rows; 0 if they cannot be the same instruction. Equal rows go first.
@@ -150,7 +150,7 @@ def _align(
     old_tree: Tree, new_tree: Tree, old_ids: list[str], new_ids: list[str]
 ) -> list[tuple[str, str]]:
     """Return pairs in the order of both, with the greatest total similarity."""
-    if len(old_ids) * len(new_ids) > MOST_PAIRS:
+    if len(old_ids) * len(new_ids) > MAX_PAIRS:
         rows = [old_tree[x].text for x in old_ids], [new_tree[y].text for y in new_ids]
         blocks = SequenceMatcher(None, *rows, autojunk=False).get_matching_blocks()
         return [(old_ids[i + k], new_ids[j + k]) for i, j, size in blocks for k in range(size)]

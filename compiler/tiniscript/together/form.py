@@ -37,10 +37,10 @@ from tiniscript.together.tree import (
 IS_GONE, HAS_NEW, CIRCLE, CHANGED, UNPARSED, TOO_LONG, BAD = (
     "gone", "has_new", "circle", "changed", "unparsed", "too_long", "bad")  # fmt: skip
 
-MOST_OPERATIONS = 200  # most operations in a change
-MOST_IDS = 2000  # most ids in an operation, such as deleting a whole program
-MOST_CHARACTERS = 2000  # most characters of an instruction or a comment
-MOST_DEPTH = 40
+MAX_OPERATIONS = 200  # most operations in a change
+MAX_IDS = 2000  # most ids in an operation, such as deleting a whole program
+MAX_CHARACTERS = 2000  # most characters of an instruction or a comment
+MAX_DEPTH = 40
 _ID = re.compile(r"[a-z0-9]{1,12}[.:][0-9]{1,9}|root|start")  # id of a node or a change
 
 
@@ -167,10 +167,10 @@ def change_of(data: object) -> Change:
     """Return the change in data. Raises Refused."""
     uid, operations = _field(data, "uid"), _field(data, "ops")
     seen_number = _field(data, "since", 0)
-    if not is_uid(uid) or type(seen_number) is not int or not _is_list(operations, MOST_OPERATIONS):
+    if not is_uid(uid) or type(seen_number) is not int or not _is_list(operations, MAX_OPERATIONS):
         raise Refused(BAD)
     conditions = []
-    for row in _checked_list(_field(data, "if", []), MOST_IDS):
+    for row in _checked_list(_field(data, "if", []), MAX_IDS):
         cells = _checked_list(row, 3)
         id, name, mark = cells if len(cells) == 3 else (None, None, None)
         if name not in (*FIELDS, PLACE):
@@ -193,9 +193,9 @@ def operation_of(data: object) -> Operation:
 
 def subtree_of(data: object, depth: int = 0) -> Subtree:
     """Return the node in data, with all that is in it. Raises Refused."""
-    if depth > MOST_DEPTH:
+    if depth > MAX_DEPTH:
         raise Refused(BAD)
-    children = _checked_list(_field(data, "in", []), MOST_IDS)
+    children = _checked_list(_field(data, "in", []), MAX_IDS)
     return Subtree(
         _checked_id(_field(data, "id")), _checked_value(data, TEXT), _checked_value(data, COMMENT),
         _checked_value(data, APART), _checked_value(data, END),
@@ -231,7 +231,7 @@ def taken_change_of(data: Json) -> TakenChange:
 
 
 def _insert_of(data: object) -> Insert:
-    nodes = tuple(subtree_of(node) for node in _checked_list(_field(data, "nodes"), MOST_IDS))
+    nodes = tuple(subtree_of(node) for node in _checked_list(_field(data, "nodes"), MAX_IDS))
     ids = [id for node in nodes for id in node.ids()]
     if not nodes or len(set(ids)) < len(ids) or not {ROOT, START}.isdisjoint(ids):
         raise Refused(BAD)
@@ -299,7 +299,7 @@ def _checked_id(data: object) -> str:
 
 
 def _checked_ids(data: object) -> tuple[str, ...]:
-    return tuple(dict.fromkeys(map(_checked_id, _checked_list(data, MOST_IDS))))
+    return tuple(dict.fromkeys(map(_checked_id, _checked_list(data, MAX_IDS))))
 
 
 def _checked_place(data: object) -> Place:
@@ -317,7 +317,7 @@ def _checked_mark(data: object) -> str:
 
 
 def _checked_marks(data: object) -> tuple[tuple[str, str], ...]:
-    if not isinstance(data, dict) or len(data) > MOST_IDS:
+    if not isinstance(data, dict) or len(data) > MAX_IDS:
         raise Refused(BAD)
     names = {*FIELDS, PLACE}
     return tuple(
@@ -332,7 +332,7 @@ def _checked_value(data: object, name: str) -> Any:
         if type(value) is not bool:
             raise Refused(BAD)
         return value
-    if not isinstance(value, str) or len(value) > MOST_CHARACTERS:
+    if not isinstance(value, str) or len(value) > MAX_CHARACTERS:
         raise Refused(BAD)
     if name != TEXT and value and not value.startswith("//"):
         raise Refused(BAD)

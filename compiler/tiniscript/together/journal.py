@@ -18,7 +18,7 @@ from tiniscript.together.form import Refused
 from tiniscript.together.ordering import SharedProgram, program_of
 from tiniscript.together.tree import Json, Tree
 
-MOST_BYTES = 4_000_000  # most bytes before a new file begins; the previous one is kept
+MAX_BYTES = 4_000_000  # most bytes before a new file begins; the previous one is kept
 OLD_ENDING = ".before"
 _FLAGS = os.O_WRONLY | os.O_APPEND | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_BINARY", 0)
 
@@ -45,7 +45,7 @@ class Journal:
         or a full disk prevented a new file, the previous one has it."""
         for path in (self.path, self._old_path) if self.path is not None else ():
             try:
-                data = read_limited(path, 2 * MOST_BYTES)
+                data = read_limited(path, 2 * MAX_BYTES)
                 complete_rows = data[: data.rfind(b"\n") + 1]
                 rows = [json.loads(row) for row in complete_rows.splitlines()]
                 program = program_of(rows[0])
@@ -112,7 +112,7 @@ class Journal:
     def _add(self, program: SharedProgram, row: Json) -> None:
         if self.path is None:
             return
-        if self.is_incomplete or self._size > MOST_BYTES:
+        if self.is_incomplete or self._size > MAX_BYTES:
             self._begin(program)
         if self._file is None:
             return

@@ -15,7 +15,7 @@ from tiniscript.together.form import (
     CIRCLE,
     HAS_NEW,
     IS_GONE,
-    MOST_DEPTH,
+    MAX_DEPTH,
     TOO_LONG,
     UNPARSED,
     Change,
@@ -45,7 +45,7 @@ from tiniscript.together.tree import (
     kind_of,
 )
 
-MOST_CHARACTERS = 20_000  # most characters of a program
+MAX_CHARACTERS = 20_000  # most characters of a program
 
 # The operations applied, and those that undo them.
 _Effect = tuple[list[Operation], list[Operation]]
@@ -118,10 +118,10 @@ def inverse_conditions(tree: Tree, inverse: tuple[Operation, ...]) -> tuple[Cond
 
 def _check_text(tree: Tree) -> None:
     """The text must parse, and say the same tree again."""
-    if _depth(tree) > MOST_DEPTH:
+    if _depth(tree) > MAX_DEPTH:
         raise Refused(BAD)
     text = text_of(tree)
-    if len(text) > MOST_CHARACTERS:
+    if len(text) > MAX_CHARACTERS:
         raise Refused(TOO_LONG)
     try:
         parsed_tree = parse_tree(text, is_laid_out=True)

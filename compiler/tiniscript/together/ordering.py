@@ -21,9 +21,9 @@ from tiniscript.together.form import (
 from tiniscript.together.operations import apply_change
 from tiniscript.together.tree import Json, Tree
 
-MOST_KEPT_CHANGES = 2000  # changes kept in memory, for returning pages
-MOST_REFUSED = 100  # most refusals that a page is sent
-MOST_PAGES = 200  # most pages whose last change is remembered
+MAX_KEPT_CHANGES = 2000  # changes kept in memory, for returning pages
+MAX_REFUSED = 100  # most refusals that a page is sent
+MAX_PAGES = 200  # most pages whose last change is remembered
 
 
 class SharedProgram:
@@ -31,7 +31,7 @@ class SharedProgram:
 
     def __init__(
         self, tree: Tree, epoch: str, keep: Callable[[Json], None] = lambda _: None,
-        most_kept: int = MOST_KEPT_CHANGES,
+        most_kept: int = MAX_KEPT_CHANGES,
     ) -> None:  # fmt: skip
         self.tree, self.epoch = tree, epoch
         self.number = 0
@@ -90,12 +90,12 @@ class SharedProgram:
         page, count = page_and_count(uid)
         self._note_count(page, count)
         self.refusals_by_page.setdefault(page, []).append((uid, reason))
-        del self.refusals_by_page[page][:-MOST_REFUSED]
+        del self.refusals_by_page[page][:-MAX_REFUSED]
 
     def _note_count(self, page: str, count: int) -> None:
         self.last_count_by_page.pop(page, None)  # the newest is the last
         self.last_count_by_page[page] = count
-        while len(self.last_count_by_page) > MOST_PAGES:
+        while len(self.last_count_by_page) > MAX_PAGES:
             oldest_page = next(iter(self.last_count_by_page))
             del self.last_count_by_page[oldest_page]
             self.refusals_by_page.pop(oldest_page, None)

@@ -20,7 +20,7 @@ from tiniscript.together import differences
 from tiniscript.together.differences import Clipboard
 from tiniscript.together.form import (
     IS_GONE,
-    MOST_OPERATIONS,
+    MAX_OPERATIONS,
     Change,
     Condition,
     Delete,
@@ -46,8 +46,8 @@ from tiniscript.together.layout import (
 from tiniscript.together.operations import apply_change, conditions_hold, inverse_conditions
 from tiniscript.together.tree import INSTRUCTION, ROOT, START, TEXT, Json, Tree, kind_of
 
-MOST_UNDONE = 200  # own changes that can be taken back
-MOST_STEPS = 1000  # most steps from a removed node to an existing one
+MAX_UNDONE = 200  # own changes that can be taken back
+MAX_STEPS = 1000  # most steps from a removed node to an existing one
 
 
 @dataclass(eq=False)
@@ -221,7 +221,7 @@ class Page:
             undo.conditions if undo else (),
             self.number,
         )
-        if not made_operations or len(made_operations) > MOST_OPERATIONS:
+        if not made_operations or len(made_operations) > MAX_OPERATIONS:
             return False
         try:
             result = apply_change(self.view, change)
@@ -545,9 +545,9 @@ class Page:
             if page_and_count(taken_change.uid)[0] == self.name:
                 undo = Undo(result.inverse, inverse_conditions(self.base, result.inverse))
                 if taken_change.uid in self._undo_uids:
-                    self._redos = [*self._redos, undo][-MOST_UNDONE:]
+                    self._redos = [*self._redos, undo][-MAX_UNDONE:]
                     continue
-                self._undos = [*self._undos, undo][-MOST_UNDONE:]
+                self._undos = [*self._undos, undo][-MAX_UNDONE:]
                 if taken_change.uid not in self._redo_uids:
                     self._redos.clear()
         self._compare(news)
@@ -680,7 +680,7 @@ class Page:
         if key_above is None or key_above in present_keys:
             return key_above
         id = key_above[0]
-        for _ in range(MOST_STEPS):
+        for _ in range(MAX_STEPS):
             if id not in self.view.former_place_by_id:
                 break
             container, previous_id, _ = self.view.former_place_by_id[id]

@@ -24,7 +24,7 @@ ARMS = frozenset(("ELSE", "ELSEIF"))
 INSTRUCTION, BLOCK, ARM, NOTE = "do", "block", "arm", "note"
 TEXT, COMMENT, APART, END = FIELDS = ("text", "note", "apart", "end")
 PLACE = "place"  # kind of mark besides those of fields
-MOST_FORMER_PLACES = 2000  # ids with known former places; the oldest are forgotten
+MAX_FORMER_PLACES = 2000  # ids with known former places; the oldest are forgotten
 
 
 def first_word(text: str) -> str:
@@ -199,7 +199,7 @@ class Tree:
     def limit_former_places(self) -> None:
         for id in list(
             islice(
-                self.former_place_by_id, max(0, len(self.former_place_by_id) - MOST_FORMER_PLACES)
+                self.former_place_by_id, max(0, len(self.former_place_by_id) - MAX_FORMER_PLACES)
             )
         ):
             del self.former_place_by_id[id]

@@ -11,7 +11,7 @@ from ipaddress import ip_address
 from zeroconf import Error, NonUniqueNameException, ServiceInfo, Zeroconf
 
 from tiniscript.link.port_names import TCP
-from tiniscript.link.transports.network import MOST_NAME_BYTES, SERVICE, query_service
+from tiniscript.link.transports.network import MAX_NAME_BYTES, SERVICE, query_service
 from tiniscript.virtual.directory import LOCAL_HOST
 
 ASK_TIMEOUT_MS = (
@@ -28,7 +28,7 @@ class Announcement:
 
     def __init__(self, name: str, tcp_port: int) -> None:
         """`tcp_port` is the robot's TCP port. Raises NameTaken, and OSError without multicast."""
-        if not 0 < len(name.encode()) <= MOST_NAME_BYTES:
+        if not 0 < len(name.encode()) <= MAX_NAME_BYTES:
             raise NameTaken
         self.port = TCP + name
         self._network = Zeroconf(interfaces=[LOCAL_HOST])

@@ -19,7 +19,7 @@ from tiniscript.robots.kinematics import Pose, move_pose
 from tiniscript.robots.profile import Body
 from tiniscript.virtual.driving import (
     EXACT_CM,
-    MOST_PUSHES,
+    MAX_PUSHES,
     PUSHING_CM,
     TOUCH_CM,
     Contact,
@@ -31,7 +31,7 @@ from tiniscript.virtual.world import Ring, Rival, World
 
 TICK_MS = 1.0
 CORNER_INTERVAL_MS = 20.0  # between two corners of the way
-MOST_SWEEPS = 4  # rounds over all contacts, until no bodies come nearer to each other
+MAX_SWEEPS = 4  # rounds over all contacts, until no bodies come nearer to each other
 GRIP = 0.7  # share of a push that acts as friction between touching bodies
 SLIP_RATIO = 0.5  # motion from a push at the side, as a share of that from a push at the back
 DECISION_INTERVAL_MS = 10.0  # time between two decisions of a rival
@@ -290,7 +290,7 @@ class Bout(Driving):
         touching_pairs = [pair for pair in pairs if pair[2] < PUSHING_CM]
         # A single contact depends on its own two pushes only.
         sweeps = (
-            MOST_SWEEPS
+            MAX_SWEEPS
             if len(touching_pairs) > 1 or any(contact for _, contact in wall_contacts)
             else 2
         )
@@ -317,7 +317,7 @@ class Bout(Driving):
 
         If that is impossible, they stay where they were.
         """
-        for _ in range(MOST_PUSHES):
+        for _ in range(MAX_PUSHES):
             if self._separate_once():
                 return
         for mover, pose in zip(self._movers, old_poses, strict=True):

@@ -19,10 +19,10 @@ TOUCH_CM = 0.3  # a smaller distance is contact
 STEP_MS = 10.0  # time step of a robot in contact
 KEEP_INTERVAL_MS = 100.0  # time between two kept poses
 NEAR_CM = 20.0  # obstacles further away than this are checked later
-MOST_CORNERS = 20_000  # corners of the path; beyond that every other one is dropped
+MAX_CORNERS = 20_000  # corners of the path; beyond that every other one is dropped
 PUSHING_CM = 0.05  # a smaller one, and the obstacle pushes back
 EXACT_CM = 1e-6  # a smaller overlap does not count
-MOST_PUSHES = 6  # attempts to push the body out of obstacles in one place
+MAX_PUSHES = 6  # attempts to push the body out of obstacles in one place
 
 
 class Contact(NamedTuple):
@@ -194,7 +194,7 @@ class Driving:
             self.corners[-1] = pose
         elif pose[:2] != last_corner[:2]:
             self.corners.append(pose)
-        if len(self.corners) > MOST_CORNERS:
+        if len(self.corners) > MAX_CORNERS:
             self.corners = [*self.corners[:-1:2], self.corners[-1]]
 
     @staticmethod
@@ -276,7 +276,7 @@ class Driving:
 
         It is pushed out of every obstacle; if that is not possible it stays where it was.
         """
-        for _ in range(MOST_PUSHES):
+        for _ in range(MAX_PUSHES):
             contact = self._contact(pose)
             if contact is None:
                 return pose, NEAR_CM

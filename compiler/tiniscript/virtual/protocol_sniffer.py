@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 
-MOST_LINE_BYTES = 2048  # bytes of a first line that is still open
+MAX_LINE_BYTES = 2048  # bytes of a first line that is still open
 
 _TOKEN = rb"[!#$%&'*+.^_`|~0-9A-Za-z-]+"  # a token of RFC 9110: any method
 _METHOD = re.compile(_TOKEN)
@@ -55,4 +55,4 @@ def _sniff_text(data: bytes) -> bool | None:
     target = line[method.end() :].lstrip(b" \t") if method else b""
     if target[:1] == b"=" or later_lines:
         return True  # `X = 5`: no target; and a line that has ended, and is no request
-    return None if len(data) <= MOST_LINE_BYTES else False
+    return None if len(data) <= MAX_LINE_BYTES else False

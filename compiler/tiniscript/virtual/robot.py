@@ -38,7 +38,7 @@ __all__ = ("POWER_ON", "RESET_BUTTON", "Settings", "VirtualRobot")
 
 LEVELS_PER_PERCENT = 2.55  # PWM levels per percent of power
 BITS_PER_BYTE = 10  # bits per byte on the line
-MOST_EVENTS = 100_000  # most events that are kept until they are fetched
+MAX_EVENTS = 100_000  # most events that are kept until they are fetched
 
 
 class Settings(NamedTuple):
@@ -138,7 +138,7 @@ class VirtualRobot:
         self._settle()
         if self.is_at_rest:
             del self._traced_robot.events[self._event_count_at_rest :]
-        del self._traced_robot.events[:-MOST_EVENTS]
+        del self._traced_robot.events[:-MAX_EVENTS]
         return sent_bytes
 
     def press(self) -> None:

@@ -12,7 +12,7 @@ from tiniscript.virtual.robot import VirtualRobot
 from tiniscript.virtual.world import World
 
 FLAG_POINTS, BUMP_POINTS, SECOND_POINTS = 100, 10, 5  # a rival as a flag; each second left
-MOST_STARS = 3  # for a task that is done, without a collision, in time
+MAX_STARS = 3  # for a task that is done, without a collision, in time
 SCORE_INTERVAL_MS = 5  # between two looks
 
 

@@ -22,7 +22,7 @@ NEAREST_CM, FARTHEST_CM = 2.0, 400.0  # range of an HC-SR04
 CONE_RADIANS = math.radians(15)  # half angle of the cone
 BUMPER_RADIANS = math.radians(60)  # half angle of the cone
 ROOM_CELSIUS = 20_000
-MOST_FINE_STEPS = 50  # a range of more steps than these has whole numbers
+MAX_FINE_STEPS = 50  # a range of more steps than these has whole numbers
 
 
 class Sensing:
@@ -104,7 +104,7 @@ class Sensing:
             return round(self._distance_cm(eye, heading) * (1 + deviation), 1) * ONE
         if place.sees == "light":
             value = device.low + (self._light(eye, heading) + deviation) * value_range
-            return round(value / ONE) * ONE if value_range > MOST_FINE_STEPS * ONE else value
+            return round(value / ONE) * ONE if value_range > MAX_FINE_STEPS * ONE else value
         if place.sees == "touch":
             is_detected = self._is_touched(place, pose)
         else:

@@ -18,7 +18,7 @@ from tiniscript.virtual.transports import BadLine, Transports
 
 HEARTBEAT_MS = 300  # interval in the robot's time
 SILENCE_S = 1.0
-MOST_FRAME_BYTES = 100  # bytes of a frame on the wire, and some
+MAX_FRAME_BYTES = 100  # bytes of a frame on the wire, and some
 
 
 class Heartbeat:
@@ -32,9 +32,9 @@ class Heartbeat:
         """Take bytes that the computer has sent."""
         self._received_s = wall_s
         *frames, self._unfinished_packet = (self._unfinished_packet + data).split(b"\0")
-        self._unfinished_packet = self._unfinished_packet[:MOST_FRAME_BYTES]
+        self._unfinished_packet = self._unfinished_packet[:MAX_FRAME_BYTES]
         for frame in frames:
-            if frame and len(frame) < MOST_FRAME_BYTES:
+            if frame and len(frame) < MAX_FRAME_BYTES:
                 self._frame = b"\0" + frame + b"\0"  # the frame sent for each heartbeat
 
     def forget(self) -> None:
@@ -50,14 +50,14 @@ class Heartbeat:
         return self._frame
 
 
-MOST_DELAY_S = 0.25  # a larger delay slows the robot's clock down
+MAX_DELAY_S = 0.25  # a larger delay slows the robot's clock down
 BUSY_S = 0.002  # between two polls while bytes are in transit,
 NEAR_S = 0.02  # pause while a client is connected or a program runs
 IDLE_S = 0.25  # pause otherwise
 TRAFFIC_S = 0.05  # time after a byte in which more bytes are expected
 STRIDE_MS = 100  # robot time between two polls of the line while it runs faster
 TURN_S = 0.01  # real time that a fast run may take before the caller gets its turn
-MOST_WAITING_BYTES = 512  # limit of bytes waiting for the robot; then the line is not read
+MAX_WAITING_BYTES = 512  # limit of bytes waiting for the robot; then the line is not read
 PUSH_MS = 60  # duration of a button press
 HOLD_MS = 2300  # duration of a long press, which confirms a claim
 
@@ -120,10 +120,10 @@ class Simulator:
 
     def turn(self, timeout_s: float = IDLE_S) -> None:
         """Wait for bytes, at most `timeout_s`; then advance the robot to the present."""
-        is_full = self.waiting_bytes >= MOST_WAITING_BYTES
+        is_full = self.waiting_bytes >= MAX_WAITING_BYTES
         self.transports.wait(min(timeout_s, self._pause_s()), is_full)
         wall_s = monotonic()
-        elapsed_s = min(wall_s - self._wall_s, MOST_DELAY_S)
+        elapsed_s = min(wall_s - self._wall_s, MAX_DELAY_S)
         self._wall_s = wall_s
         data = b"" if is_full else self.transports.receive()
         if self.transports.visit_count != self._visit_count:
@@ -175,7 +175,7 @@ class Simulator:
             self._step(step_ms, is_hurrying)
             self._owed_ms = max(0.0, self._owed_ms - step_ms)
             if monotonic() > end_s:
-                self._owed_ms = min(self._owed_ms, MOST_DELAY_S * 1000)
+                self._owed_ms = min(self._owed_ms, MAX_DELAY_S * 1000)
                 break
             if not is_hurrying:
                 break

@@ -24,13 +24,13 @@ from tiniscript.virtual.directory import LOCAL_HOST
 from tiniscript.virtual.protocol_sniffer import sniff_robot_client
 
 READ_BYTES = 1024
-MOST_UNSENT_BYTES = (
+MAX_UNSENT_BYTES = (
     65_536  # buffer for a client that does not read; more is lost, as on a serial line
 )
 PORT_TAKEN = b"Port already in use: another program is talking to this robot.\r\n"
 REFUSAL_DELAY_S = 0.3  # time before a second caller gets a message
 FAREWELL_S = 2.5  # time to read the farewell message
-MOST_CALLERS = 64  # most clients at a time; macOS allows 256 open files
+MAX_CALLERS = 64  # most clients at a time; macOS allows 256 open files
 PROTECTION_S = 0.25  # a caller is not dropped for a newer one within this time
 SILENCE_TIMEOUT_S = 60.0  # timeout of a caller that sends nothing,
 OPENING_TIMEOUT_S = 10.0  # timeout of a client whose first bytes or line are incomplete
@@ -120,7 +120,7 @@ class Transports:
                 with contextlib.suppress(OSError):  # nobody reads, and the buffer is full
                     os.write(self._own_end, data)
             return
-        self._unsent += data[: MOST_UNSENT_BYTES - len(self._unsent)]
+        self._unsent += data[: MAX_UNSENT_BYTES - len(self._unsent)]
         if not self._unsent:
             return
         try:
@@ -181,7 +181,7 @@ class Transports:
 
     def _accept(self) -> None:
         """Accept new callers; if there are too many, drop the oldest."""
-        for _ in range(MOST_CALLERS):
+        for _ in range(MAX_CALLERS):
             if not self._has_room():
                 return
             try:
@@ -197,14 +197,14 @@ class Transports:
             if not is_of_this_user(peer):
                 peer.close()
                 continue
-            if len(self._callers) >= MOST_CALLERS:
+            if len(self._callers) >= MAX_CALLERS:
                 self._drop_oldest()
             self._callers.append(_Caller(peer, monotonic()))
 
     def _has_room(self) -> bool:
         """Return whether one more caller may be accepted: each has PROTECTED_S to send."""
         protected_since_s = monotonic() - PROTECTION_S
-        is_few = len(self._callers) < MOST_CALLERS or self._callers[0].arrival_s < protected_since_s
+        is_few = len(self._callers) < MAX_CALLERS or self._callers[0].arrival_s < protected_since_s
         return is_few and self._full_s < protected_since_s
 
     def _drop_oldest(self) -> None:
@@ -294,8 +294,8 @@ def can_have_terminal() -> bool:
 
 
 RADIO_TEXT = b"OK+LOST\r\n"  # text that HC-06 and HM-10 modules insert into the stream
-MOST_LOST_BYTES = 4  # bytes in a row
-MOST_DELAY_MS = 300
+MAX_LOST_BYTES = 4  # bytes in a row
+MAX_DELAY_MS = 300
 
 
 class BadLine:
@@ -325,14 +325,14 @@ class BadLine:
             kind = self._random_source.randrange(4)
             if kind == 0:
                 # This byte is lost as well.
-                self._loss_count = self._random_source.randrange(MOST_LOST_BYTES)
+                self._loss_count = self._random_source.randrange(MAX_LOST_BYTES)
             elif kind == 1:
                 self._in_transit.append((due_ms, byte ^ 1 << self._random_source.randrange(8)))
             elif kind == 2:
                 self._in_transit.extend((due_ms, radio_byte) for radio_byte in (*RADIO_TEXT, byte))
             else:
                 self._in_transit.append(
-                    (due_ms + self._random_source.randrange(MOST_DELAY_MS), byte)
+                    (due_ms + self._random_source.randrange(MAX_DELAY_MS), byte)
                 )
 
     def take_arrived(self, now_ms: int) -> bytes:

@@ -19,11 +19,11 @@ from tiniscript.virtual.geometry import Point
 from tiniscript.virtual.world import Flag, Lamp, Line, Ring, Rival, World, WorldRefused
 
 LARGEST_CM = 2000 * ONE
-MOST_PARTS = 100  # walls, and as many boxes, lines, lamps, flags and rings
-MOST_RIVALS = 3
-MOST_SECONDS = 600 * ONE  # most seconds for its flags
-MOST_POINTS = 200  # most points of a wall or a line
-MOST_LABEL_CHARACTERS = 60
+MAX_PARTS = 100  # walls, and as many boxes, lines, lamps, flags and rings
+MAX_RIVALS = 3
+MAX_SECONDS = 600 * ONE  # most seconds for its flags
+MAX_POINTS = 200  # most points of a wall or a line
+MAX_LABEL_CHARACTERS = 60
 T = TypeVar("T")
 
 
@@ -71,7 +71,7 @@ def _read(root: Table, name: str) -> World:
     ambient = _number(light, "ambient_percent", 0, 100 * ONE, default=10) / 100
     light.finish()
     task = root.table("task")
-    seconds = _number(task, "seconds", 0, MOST_SECONDS)
+    seconds = _number(task, "seconds", 0, MAX_SECONDS)
     task.finish()
     return World(
         name,
@@ -88,12 +88,12 @@ def _read(root: Table, name: str) -> World:
         _parts(root, "flags", _flag),
         seconds,
         _parts(root, "rings", _ring),
-        _parts(root, "rivals", _rival, MOST_RIVALS),
+        _parts(root, "rivals", _rival, MAX_RIVALS),
     )
 
 
 def _parts(
-    root: Table, key: str, read: Callable[[Table], T], most_count: int = MOST_PARTS
+    root: Table, key: str, read: Callable[[Table], T], most_count: int = MAX_PARTS
 ) -> tuple[T, ...]:
     tables = root.tables(key)
     if len(tables) > most_count:
@@ -120,9 +120,9 @@ def _place(table: Table) -> Point:
 def _row(table: Table) -> tuple[Point, ...]:
     example = "points = [[20, 50], [80, 50]]"
     pairs = table.pairs("points", -LARGEST_CM, LARGEST_CM, example)
-    if pairs is not None and not 2 <= len(pairs) <= MOST_POINTS:
-        table.complain("points_count", "points", found=str(len(pairs)), most=str(MOST_POINTS))
-    return tuple(Point(x / ONE, y / ONE) for x, y in (pairs or ())[:MOST_POINTS])
+    if pairs is not None and not 2 <= len(pairs) <= MAX_POINTS:
+        table.complain("points_count", "points", found=str(len(pairs)), most=str(MAX_POINTS))
+    return tuple(Point(x / ONE, y / ONE) for x, y in (pairs or ())[:MAX_POINTS])
 
 
 def _line(table: Table) -> Line:
@@ -179,7 +179,7 @@ def _labels(table: Table, name: str) -> dict[str, str]:
     """Return the world's name by language, or `name` in each if it has none."""
     label_of_language: ByLanguage[str] = ByLanguage()
     for language in languages():
-        label = table.label(language, MOST_LABEL_CHARACTERS)
+        label = table.label(language, MAX_LABEL_CHARACTERS)
         if label is not None:
             label_of_language[language] = label
     table.finish()

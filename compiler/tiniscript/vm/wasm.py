@@ -27,7 +27,7 @@ _RULE_NAMES = {number: name for name, (number, _) in RULES.items()}
 _REFUSAL_NAMES = {number: name for name, (number, _) in REFUSALS.items()}
 
 _HALF_CLOCK_MS = CLOCK_MS // 2
-_MOST_STEPS = 65_535  # instructions, the most of one tick
+_MAX_STEPS = 65_535  # instructions, the most of one tick
 
 # Positions of numbers in `Exchange` of `main.cpp`
 _NOW_MS, _LEFT, _WAKE_MS, _STATUS, _FIRST, _SECOND, _ANSWER, _IS_ANSWERED = range(8)
@@ -136,7 +136,7 @@ class WasmMachine:
 
     def tick(self, now_ms: int, most_steps: int) -> str:
         """Run at most `most_steps` instructions at the time `now_ms`; return the status."""
-        most_steps = min(most_steps, _MOST_STEPS)
+        most_steps = min(most_steps, _MAX_STEPS)
         numbers = self._image.exchange
         numbers[_NOW_MS] = (now_ms + _HALF_CLOCK_MS) % CLOCK_MS - _HALF_CLOCK_MS
         numbers[_LEFT] = most_steps

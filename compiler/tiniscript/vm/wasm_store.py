@@ -22,10 +22,10 @@ import wasmtime
 from wasmtime import Config, Engine, Func, FuncType, Memory, Module, Store, ValType, WasmtimeError
 
 # Memory of one instance. It does not grow: the modules have at most three pages.
-MOST_BYTES = 1 << 20
+MAX_BYTES = 1 << 20
 # wasmtime keeps 4 GB of addresses for each memory otherwise: an address space with a limit
 # (ulimit -v, a container) has no room for that, and any has only for 16,000 of them.
-RESERVED_BYTES, GUARD_BYTES = MOST_BYTES, 1 << 16
+RESERVED_BYTES, GUARD_BYTES = MAX_BYTES, 1 << 16
 
 
 class Instance:
@@ -38,7 +38,7 @@ class Instance:
     def __init__(self, path: Path, imports: Mapping[str, Callable[[], None]]) -> None:
         """`imports` are what the module imports, by name: functions without numbers."""
         self._store = Store(_engine())
-        self._store.set_limits(memory_size=MOST_BYTES, instances=1, memories=1, tables=1)
+        self._store.set_limits(memory_size=MAX_BYTES, instances=1, memories=1, tables=1)
         module = _module(path)
         imported_functions = [Func(self._store, FuncType([], []), imports[import_type.name or ""])
                  for import_type in module.imports]  # fmt: skip

@@ -32,7 +32,7 @@ import { Start } from './start/start.js';
 import { startTheme } from './page/theme.js';
 import { Views } from './writing/views.js';
 import { ROBOTS } from './page/words.js';
-import { storeWork, loadWork, MOST_CHARACTERS } from './programs/work.js';
+import { storeWork, loadWork, MAX_CHARACTERS } from './programs/work.js';
 
 /** @typedef {import('./python.js').Finding} Finding */
 
@@ -268,7 +268,7 @@ function showRobots() {
 }
 
 function storeCurrentWork() {
-  if (!storeWork(work)) pageState.note.set(text(work.text.length > MOST_CHARACTERS ? 'kept_too_long' : 'not_kept'));
+  if (!storeWork(work)) pageState.note.set(text(work.text.length > MAX_CHARACTERS ? 'kept_too_long' : 'not_kept'));
 }
 
 robotSelect.addEventListener('change', async () => {

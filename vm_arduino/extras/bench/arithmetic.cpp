@@ -16,13 +16,13 @@ using simulated::request;
 
 namespace {
 
-constexpr uint8_t kMostOps = 32;
-constexpr uint8_t kMostEdges = 100;
+constexpr uint8_t kMaxOps = 32;
+constexpr uint8_t kMaxEdges = 100;
 
 Machine machine;
-uint8_t ops[kMostOps];
+uint8_t ops[kMaxOps];
 uint8_t op_count;
-int32_t edges[kMostEdges];
+int32_t edges[kMaxEdges];
 uint8_t edge_count;
 uint32_t state;  // xorshift32, apart from that of the machine
 

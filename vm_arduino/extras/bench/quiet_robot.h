@@ -8,11 +8,11 @@
 
 namespace tiniscript {
 
-constexpr uint8_t kMostValues = 8;
+constexpr uint8_t kMaxValues = 8;
 
-int32_t readings[kMostValues];
+int32_t readings[kMaxValues];
 uint8_t next_reading = 0;
-int32_t shown_values[kMostValues];
+int32_t shown_values[kMaxValues];
 uint8_t show_count = 0;
 
 void robot_motors(int8_t, int8_t) {}
@@ -20,14 +20,14 @@ void robot_motors(int8_t, int8_t) {}
 void robot_off() {}
 
 bool robot_read(uint8_t, int32_t* value) {
-  *value = readings[next_reading++ % kMostValues];
+  *value = readings[next_reading++ % kMaxValues];
   return true;
 }
 
 void robot_beep(uint16_t, uint32_t) {}
 
 bool robot_show(int32_t value, bool) {
-  shown_values[show_count++ % kMostValues] = value;
+  shown_values[show_count++ % kMaxValues] = value;
   return true;
 }
 

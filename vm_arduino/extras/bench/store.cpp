@@ -18,9 +18,9 @@ using simulated::say;
 
 namespace {
 
-constexpr uint16_t kMostBytes = kImageBytes;
+constexpr uint16_t kMaxBytes = kImageBytes;
 
-uint8_t image[kMostBytes];
+uint8_t image[kMaxBytes];
 uint16_t length;
 Store store;
 uint32_t longest_start;

@@ -26,7 +26,7 @@ bool TracedRobot::read(Request* request) {
   now_ms = 0;
   must_wait = was_slow = is_off = false;
   sensor_count = request->u8();
-  if (sensor_count > kMostSensors) return false;
+  if (sensor_count > kMaxSensors) return false;
   for (uint8_t k = 0; k < sensor_count; k++) {
     Sensor& sensor = sensors[k];
     sensor.name = request->text();
@@ -38,7 +38,7 @@ bool TracedRobot::read(Request* request) {
     request->skip(sizeof(int32_t) * sensor.count);
   }
   actuator_count = request->u8();
-  if (actuator_count > kMostActuators) return false;
+  if (actuator_count > kMaxActuators) return false;
   for (uint8_t k = 0; k < actuator_count; k++) {
     Actuator& actuator = actuators[k];
     actuator.name = request->text();

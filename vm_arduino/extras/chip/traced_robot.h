@@ -10,11 +10,11 @@
 namespace tiniscript {
 
 #ifdef __AVR__
-constexpr uint8_t kMostSensors = 14;
-constexpr uint8_t kMostActuators = 4;
+constexpr uint8_t kMaxSensors = 14;
+constexpr uint8_t kMaxActuators = 4;
 #else  // more than a profile may have
-constexpr uint8_t kMostSensors = 255;
-constexpr uint8_t kMostActuators = 255;
+constexpr uint8_t kMaxSensors = 255;
+constexpr uint8_t kMaxActuators = 255;
 #endif
 
 // When a machine is called: at multiples of so many milliseconds. Some sensors, bits of their
@@ -58,8 +58,8 @@ struct TracedRobot {
   bool is_off;     // and no motor was set since
   uint8_t sensor_count;
   uint8_t actuator_count;
-  Sensor sensors[kMostSensors];
-  Actuator actuators[kMostActuators];
+  Sensor sensors[kMaxSensors];
+  Actuator actuators[kMaxActuators];
 
   // Takes sensors, readings and actuators from a request and starts at 0 ms. False: there are more
   // than fit.

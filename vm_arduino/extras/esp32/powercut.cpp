@@ -26,7 +26,7 @@ namespace {
 
 typedef std::map<std::string, std::string> Entries;
 
-constexpr uint32_t kMostTicks = 60000;
+constexpr uint32_t kMaxTicks = 60000;
 
 unsigned long cases;
 uint32_t most_writes;
@@ -49,7 +49,7 @@ void forget() {
 
 void run(Store* store) {
   for (uint32_t ticks = 0; store->is_busy() && !chip.is_off; ticks++) {
-    if (ticks > kMostTicks) fail("it does not end");
+    if (ticks > kMaxTicks) fail("it does not end");
     if (nvm_is_ready()) store->tick(true);
   }
 }
@@ -186,5 +186,5 @@ int main(int count, char** arguments) {
     for (int k = 0; k < 4; k++) records.push_back(random_record(area));
     history("records", area, records);
   }
-  printf("CASES %lu\nMOST_WRITES %u\n", cases, most_writes);
+  printf("CASES %lu\nMAX_WRITES %u\n", cases, most_writes);
 }

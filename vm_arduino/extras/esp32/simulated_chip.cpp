@@ -37,7 +37,7 @@ constexpr uint32_t kEchoBeginsUs = 450;
 constexpr size_t kFifoBytes = 128;
 constexpr size_t kRingBytes = 32;
 constexpr uint32_t kNextPort = 0xc;  // from a register of pins 0 to 31 to that of the others
-constexpr int kMostHandles = 4;  // of NVS: the store's, and one that is just used
+constexpr int kMaxHandles = 4;  // of NVS: the store's, and one that is just used
 
 // Pins, as components/soc/CHIP/include/soc/soc_caps.h has them, and the data sheets: those of the
 // flash are not for the firmware.
@@ -47,7 +47,7 @@ constexpr uint64_t kOutputs = kPins & 0x3ffffffff;
 constexpr uint64_t kFirstAdc = 0xff00000000;    // 32 to 39
 constexpr uint64_t kSecondAdc = 0x00000e00f015;  // 0, 2, 4, 12 to 15, 25 to 27
 constexpr uint8_t kChannels = 16;
-constexpr uint8_t kMostBits = 20;
+constexpr uint8_t kMaxBits = 20;
 constexpr uint64_t kClocks[] = {80000000, 1000000};
 constexpr uint8_t kReceivePin = 3;
 constexpr bool kBreakIsError = true;  // nobody knows of which chip a break is a framing error, too
@@ -57,7 +57,7 @@ constexpr uint64_t kOutputs = kPins;
 constexpr uint64_t kFirstAdc = 0x1f;
 constexpr uint64_t kSecondAdc = 0x20;
 constexpr uint8_t kChannels = 6;
-constexpr uint8_t kMostBits = 14;
+constexpr uint8_t kMaxBits = 14;
 constexpr uint64_t kClocks[] = {40000000};
 constexpr uint8_t kReceivePin = 20;
 constexpr bool kBreakIsError = false;
@@ -149,7 +149,7 @@ bool can_make(uint32_t hertz, uint8_t bits) {
 // that, and all stays as it is.
 bool set_frequency(uint8_t channel, uint32_t hertz, uint8_t bits) {
   expect(channel < kChannels, "a channel of LEDC that the chip does not have");
-  expect(bits <= kMostBits, "more bits of LEDC than the chip has");
+  expect(bits <= kMaxBits, "more bits of LEDC than the chip has");
   if (!can_make(hertz, bits)) return false;
   for (uint8_t shared_channel : {channel, static_cast<uint8_t>(channel ^ 1)}) {
     chip.channels[shared_channel].hertz = hertz;
@@ -479,7 +479,7 @@ esp_err_t esp_task_wdt_reset(void) {
 esp_err_t nvs_open(const char* name, nvs_open_mode_t, nvs_handle_t* out_handle) {
   expect(strlen(name) < 16, "a key of NVS that is too long");
   if (chip.nvs_fault == NvsFault::kClosed) return ESP_ERR_NVS_NOT_INITIALIZED;
-  expect(++chip.nvs_handles <= kMostHandles, "handles of NVS that are left open");
+  expect(++chip.nvs_handles <= kMaxHandles, "handles of NVS that are left open");
   *out_handle = 1;
   return ESP_OK;
 }

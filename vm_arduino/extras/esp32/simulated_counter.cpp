@@ -16,7 +16,7 @@ namespace {
 constexpr uint64_t kInputs = 0xff0efff03f;  // without the pins of the flash
 constexpr uint64_t kPulledUp = kInputs & 0x3ffffffff;
 constexpr uint64_t kTick = 25;  // of APB_CLK, 80 MHz, in half nanoseconds
-constexpr uint16_t kMostFilter = 1023;
+constexpr uint16_t kMaxFilter = 1023;
 
 // A line behind its filter, which has a change once it has lasted.
 struct Line {
@@ -145,7 +145,7 @@ esp_err_t pcnt_counter_resume(pcnt_unit_t pcnt_unit) {
 }
 
 esp_err_t pcnt_set_filter_value(pcnt_unit_t unit, uint16_t filter_val) {
-  expect(filter_val <= kMostFilter, "a longer filter than the pulse counter has");
+  expect(filter_val <= kMaxFilter, "a longer filter than the pulse counter has");
   unit_of(unit)->filter = filter_val;
   return ESP_OK;
 }

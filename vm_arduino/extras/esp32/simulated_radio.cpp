@@ -45,7 +45,7 @@ struct LowEnergyClient {
   bool has_subscribed = false;
   std::vector<std::string> notified;
 };
-constexpr size_t kMostClients = 3;  // CONFIG_BTDM_CTRL_BLE_MAX_CONN of the core
+constexpr size_t kMaxClients = 3;  // CONFIG_BTDM_CTRL_BLE_MAX_CONN of the core
 std::map<uint16_t, LowEnergyClient> clients;
 std::vector<uint16_t> dismissed_clients;  // and still there
 gatts_event_handler on_gatts_event;
@@ -90,7 +90,7 @@ wifi_mode_t wifi_mode = WIFI_OFF;
 bool has_modem_sleep = true;
 std::atomic<bool> has_network_stack{false};
 std::atomic<int> sockets{0};
-constexpr int kMostSockets = 16;
+constexpr int kMaxSockets = 16;
 std::atomic<size_t> send_limit{
     90};  // of what is sent at once: the rest comes later, as over a poor radio
 std::string reachable_name;
@@ -181,7 +181,7 @@ uint16_t low_energy_connect() {
   uint16_t client = 0;
   {
     const Lock lock(guard);
-    if (!is_advertising || clients.size() == kMostClients) return kNoClient;
+    if (!is_advertising || clients.size() == kMaxClients) return kNoClient;
     while (clients.count(client) != 0) client++;
     is_advertising = false;
     clients[client] = LowEnergyClient();
@@ -647,7 +647,7 @@ void esp_log_level_set(const char* tag, esp_log_level_t level) {
 int lwip_accept(int s, struct sockaddr* addr, socklen_t* addrlen) {
   const int connection = accept(s, addr, addrlen);
   if (connection < 0) return connection;
-  if (sockets == kMostSockets) {  // it is taken from those that wait, and gone
+  if (sockets == kMaxSockets) {  // it is taken from those that wait, and gone
     close(connection);
     errno = ENFILE;
     return -1;
@@ -715,7 +715,7 @@ int lwip_setsockopt(int s, int level, int optname, const void* optval, socklen_t
 }
 int lwip_socket(int domain, int type, int protocol) {
   expect(has_network_stack, "the network before WiFi has begun");
-  if (sockets == kMostSockets) {
+  if (sockets == kMaxSockets) {
     errno = ENFILE;
     return -1;
   }

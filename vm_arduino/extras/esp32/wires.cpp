@@ -43,7 +43,7 @@ int power_of(const TurningServo& motor) {
 }
 #endif
 
-static_assert(sizeof kServos / sizeof *kServos <= kMostServos, "more servos than are looked at");
+static_assert(sizeof kServos / sizeof *kServos <= kMaxServos, "more servos than are looked at");
 #endif
 
 uint32_t tone() {

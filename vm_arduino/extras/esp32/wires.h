@@ -6,7 +6,7 @@
 
 #include <stdint.h>
 
-constexpr uint8_t kMostServos = 8;
+constexpr uint8_t kMaxServos = 8;
 
 // What reaches the parts, from the pins alone.
 struct PartOutputs {
@@ -14,7 +14,7 @@ struct PartOutputs {
   int right;
   uint32_t hertz;  // of the buzzer; 0: none
   uint8_t servos;
-  uint32_t pulse_us[kMostServos];  // 0: none
+  uint32_t pulse_us[kMaxServos];  // 0: none
 };
 
 PartOutputs part_outputs();

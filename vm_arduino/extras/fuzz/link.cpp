@@ -22,7 +22,7 @@ using namespace tiniscript;
 
 namespace {
 
-constexpr size_t kMostEvents = 300;
+constexpr size_t kMaxEvents = 300;
 constexpr uint8_t kReplies = 20;  // turns in which the robot may go on talking
 
 Receiver receiver;
@@ -145,7 +145,7 @@ int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   now_ms = 0;
   seq = 0;
   sent_bytes.clear();
-  for (size_t k = 0; k < kMostEvents && input.has_more(); k++) {
+  for (size_t k = 0; k < kMaxEvents && input.has_more(); k++) {
     const uint8_t event = input.u8();
     if (event < 0x40) {
       send_frame(event, &input);

@@ -19,7 +19,7 @@ namespace {
 
 constexpr uint16_t kTicks = 60;
 constexpr uint8_t kBudget = 20;  // instructions
-constexpr size_t kMostBytes = 600;
+constexpr size_t kMaxBytes = 600;
 
 bool is_on;        // a motor
 bool is_refusing;  // every second question is answered "not yet"
@@ -72,7 +72,7 @@ int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   const uint8_t actuators = input.u8() % 8;
   const uint8_t flags = input.u8();
   std::vector<uint8_t> image;
-  while (input.has_more() && image.size() < kMostBytes) image.push_back(input.u8());
+  while (input.has_more() && image.size() < kMaxBytes) image.push_back(input.u8());
   if ((flags & 1) != 0) {
     if (image.size() < kHeaderBytes) return -1;
     make_valid(&image);

@@ -16,7 +16,7 @@ using namespace tiniscript;
 
 namespace {
 
-constexpr size_t kMostBytes = 4096;
+constexpr size_t kMaxBytes = 4096;
 constexpr size_t kRoom = 800;
 
 struct Packet {
@@ -121,7 +121,7 @@ std::vector<Packet> expected(const std::string& data) {
 int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size) {
   Input input(bytes, size);
   std::string data;
-  while (input.has_more() && data.size() < kMostBytes) {
+  while (input.has_more() && data.size() < kMaxBytes) {
     const uint8_t event = input.u8();
     data += event < 0x40 ? message(&input) : bytes_of(&input, event % 32);
   }

@@ -15,14 +15,14 @@ using namespace tiniscript;
 
 namespace {
 
-constexpr uint8_t kMostActions = 12;
-constexpr uint32_t kMostTicks = 20000;
+constexpr uint8_t kMaxActions = 12;
+constexpr uint32_t kMaxTicks = 20000;
 
 bool has_cut;  // in this input
 
 void run(Store* store) {
   for (uint32_t ticks = 0; store->is_busy() && !memory.is_off; ticks++) {
-    must(ticks < kMostTicks);
+    must(ticks < kMaxTicks);
     memory.is_writing = false;
     store->tick(true);
   }
@@ -76,7 +76,7 @@ int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   }
   Store store;
   start_twice(&store);
-  for (uint8_t k = 0; k < kMostActions && input.has_more(); k++) {
+  for (uint8_t k = 0; k < kMaxActions && input.has_more(); k++) {
     const uint8_t flags = input.u8();
     const bool is_cut = (flags & 0x10) != 0;
     uint16_t cut_after = is_cut ? input.u16() % 512 : 0;

@@ -245,7 +245,7 @@ void port_identify() { say("IDENTIFY"); }
 
 Answer port_tune(const Tuning& new_tuning, bool has_pace) {
   if (port.is_busy) return Answer::kBusy;
-  if (new_tuning.trim.least > kMostLeast) return Answer::kBadValue;
+  if (new_tuning.trim.least > kMaxLeast) return Answer::kBadValue;
   port.tuning.trim = new_tuning.trim;
   if (has_pace) port.tuning.pace = new_tuning.pace;
   say("TRIM %u", new_tuning.trim.wheels);

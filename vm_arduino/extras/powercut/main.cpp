@@ -26,7 +26,7 @@ using namespace tiniscript;
 
 namespace {
 
-constexpr uint32_t kMostTicks = 20000;
+constexpr uint32_t kMaxTicks = 20000;
 constexpr uint32_t kThirdCuts = 8;  // one in so many second cuts is followed by a third one
 
 // The robot: what a cut leaves of it, and what it does not.
@@ -71,7 +71,7 @@ void tick(Store* store) {
 // Runs until there is nothing more to do, or the plug is pulled.
 void run(Store* store) {
   for (uint32_t ticks = 0; store->is_busy() && !memory.is_off; ticks++) {
-    if (ticks > kMostTicks) fail("it does not end");
+    if (ticks > kMaxTicks) fail("it does not end");
     tick(store);
   }
   memory.is_writing = false;
@@ -250,7 +250,7 @@ World world_after_give_up(World world, Content content, uint8_t marks) {
   memory = world.memory;
   Task task = {Area::kProgram, content};
   if (!begin(&world.store, task.area, &task.content)) fail("a save before is refused");
-  for (uint32_t ticks = 0; ticks < kMostTicks; ticks++) {
+  for (uint32_t ticks = 0; ticks < kMaxTicks; ticks++) {
     memory.is_writing = false;
     const bool is_ready = world.store.is_ready_to_commit();
     if (is_ready && marks == 0) break;
@@ -360,6 +360,6 @@ int main(int count, char** arguments) {
   } else {
     programs(static_cast<uint16_t>(atoi(arguments[2])), stride);
   }
-  printf("CASES %lu\nSAVES %lu\nMOST_ERASES %u\nMOST_WRITES %u\n", cases, whole_saves,
+  printf("CASES %lu\nSAVES %lu\nMAX_ERASES %u\nMAX_WRITES %u\n", cases, whole_saves,
          static_cast<unsigned>(most_erases), static_cast<unsigned>(most_writes));
 }

@@ -19,7 +19,7 @@ void expect(bool condition, const char* message) {
   exit(3);
 }
 
-uint8_t old_value(const Memory::Cell& cell) {
+uint8_t read_cell(const Memory::Cell& cell) {
   return random_below(2) == 0 ? cell.value : cell.other_value;
 }
 
@@ -59,10 +59,10 @@ void write(uint16_t place, uint8_t value) {
       value = nasty_byte(place);
       break;
     case TornByte::kBoth:
-      value &= old_value(cell);
+      value &= read_cell(cell);
       break;
     case TornByte::kUnstable:
-      cell = {old_value(cell), value};
+      cell = {read_cell(cell), value};
       return;
   }
   cell = {value, value};
@@ -80,7 +80,7 @@ uint8_t nvm_read(uint16_t place) {
   expect(place < kMemoryBytes, "a read past the end");
   expect(!memory.is_writing, "a look while a write goes on");
   const Memory::Cell& cell = memory.cells[place];
-  return cell.value == cell.other_value ? cell.value : old_value(cell);
+  return cell.value == cell.other_value ? cell.value : read_cell(cell);
 }
 
 void nvm_write(uint16_t place, uint8_t value) {

@@ -7,11 +7,11 @@ namespace tiniscript {
 
 namespace {
 
-constexpr uint16_t kMostRoom = 60000;
-constexpr uint16_t kMostWords = 4096;
+constexpr uint16_t kMaxRoom = 60000;
+constexpr uint16_t kMaxWords = 4096;
 
-uint8_t buffer[kMostRoom];
-uint8_t words[kMostWords];
+uint8_t buffer[kMaxRoom];
+uint8_t words[kMaxWords];
 Reader reader;
 
 void say(TextState state) {
@@ -48,7 +48,7 @@ void read(size_t text_start, uint32_t length, uint16_t room) {
 void answer_texts(Request request, size_t end) {
   const uint16_t room = request.u16();
   const uint32_t size = request.u32();
-  if (room > kMostRoom || size > kMostWords) return;
+  if (room > kMaxRoom || size > kMaxWords) return;
   for (uint32_t k = 0; k < size; k++) words[k] = request.u8();
   while (request.place() < end) {
     const uint32_t length = request.u32();

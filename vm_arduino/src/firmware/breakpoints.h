@@ -16,7 +16,7 @@
 
 namespace tiniscript {
 
-constexpr uint8_t kMostPlaces = 4;
+constexpr uint8_t kMaxPlaces = 4;
 
 class Breakpoints {
  public:
@@ -60,7 +60,7 @@ class Breakpoints {
   void note_left_statements(const Machine& machine);
 
   uint8_t* code_;
-  uint16_t places_[kMostPlaces];
+  uint16_t places_[kMaxPlaces];
   uint8_t count_;
   bool is_halted_ : 1;
   bool is_stepping_ : 1;
@@ -72,7 +72,7 @@ class Breakpoints {
   Statement statements_[kAllTasks];  // where each task has halted; its start may be kNoPlace
   // The original instructions where the traps are: of each place, of the step's end, and of both
   // ways on from each statement. It is kTrap if there is none.
-  uint8_t bytes_[kMostPlaces + 1 + 2 * kAllTasks];
+  uint8_t bytes_[kMaxPlaces + 1 + 2 * kAllTasks];
 };
 
 }  // namespace tiniscript

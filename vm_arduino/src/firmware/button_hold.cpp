@@ -10,7 +10,7 @@ namespace tiniscript {
 
 namespace {
 
-constexpr uint16_t kMostMs = 60000;    // longer presses count as this
+constexpr uint16_t kMaxMs = 60000;    // longer presses count as this
 constexpr uint16_t kSignHertz = 1568;  // says that the button may be let go
 constexpr uint8_t kSignMs = 250;
 
@@ -44,7 +44,7 @@ void pass_button_hold(uint16_t passed_ms) {
   if (near_hold->phase == Phase::kUp) return;
   const uint16_t previous_ms = near_hold->down_ms;
   near_hold->down_ms =
-      passed_ms < kMostMs - previous_ms ? static_cast<uint16_t>(previous_ms + passed_ms) : kMostMs;
+      passed_ms < kMaxMs - previous_ms ? static_cast<uint16_t>(previous_ms + passed_ms) : kMaxMs;
   if (!kHasOwners) return;
   if (near_hold->phase == Phase::kDown && previous_ms < kClaimMs && near_hold->down_ms >= kClaimMs)
     confirm();

@@ -21,8 +21,8 @@ constexpr uint16_t kLongestMs = 1000;  // one at most
 constexpr int32_t kEdge = 64;        // positions are in 64ths of the way between two edges
 constexpr int32_t kFar = 5 * kEdge;  // so far ahead a wheel gets as little power as may be
 constexpr uint8_t kRollMs = 60;      // until the robot has seen how it rolls
-constexpr uint8_t kLeastRollMs = 10;
-constexpr uint8_t kMostRollMs = 200;
+constexpr uint8_t kMinRollMs = 10;
+constexpr uint8_t kMaxRollMs = 200;
 constexpr int8_t kCreep = 35;        // percent: slow, but it moves
 constexpr uint8_t kCorrections = 2;  // of one move
 constexpr uint8_t kWheels = 2;
@@ -312,8 +312,8 @@ void settle() {
     const int32_t expected_roll = guide.off_roll;
     const int32_t new_roll_ms =
         guide.roll_ms * (3 * expected_roll + measured_roll) / (4 * expected_roll);
-    guide.roll_ms = static_cast<uint8_t>(new_roll_ms < kLeastRollMs  ? kLeastRollMs
-                                         : new_roll_ms > kMostRollMs ? kMostRollMs
+    guide.roll_ms = static_cast<uint8_t>(new_roll_ms < kMinRollMs  ? kMinRollMs
+                                         : new_roll_ms > kMaxRollMs ? kMaxRollMs
                                                                      : new_roll_ms);
   }
   if (!misses_target || guide.corrections == kCorrections) {

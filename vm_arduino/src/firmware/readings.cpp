@@ -14,7 +14,7 @@ bool are_readings_noted;
 
 namespace {
 
-constexpr uint8_t kMostReadings = 12;  // on a slow line they delay the end of a run by that much
+constexpr uint8_t kMaxReadings = 12;  // on a slow line they delay the end of a run by that much
 constexpr uint8_t kSensorsOfKits = 32;
 constexpr uint8_t kAllSensors = kSensorsOfKits + kRemoteRoom;
 
@@ -40,7 +40,7 @@ class Sensors {
   uint8_t bytes_[(kAllSensors + 7) / 8];
 };
 
-ReadingReport reports[kMostReadings];
+ReadingReport reports[kMaxReadings];
 uint8_t oldest;
 uint8_t count;
 Sensors read_sensors;     // in this run
@@ -63,8 +63,8 @@ void note_changed(uint8_t sensor, int32_t previous_value, int32_t value) {
   if (read_sensors.has(sensor) && value == previous_value) return;
   read_sensors.add(sensor);
   if (dropped_sensors.has(sensor)) return;
-  if (count == kMostReadings) return dropped_sensors.add(sensor);
-  reports[(oldest + count++) % kMostReadings] = reading_of(sensor, value);
+  if (count == kMaxReadings) return dropped_sensors.add(sensor);
+  reports[(oldest + count++) % kMaxReadings] = reading_of(sensor, value);
 }
 
 void port_tell_readings(bool is_on) {
@@ -82,7 +82,7 @@ ReadingReport port_next_reading() {
     return reading_of(sensor | kAfterGap, board_readings()[sensor]);
   }
   const ReadingReport& reading = reports[oldest];
-  oldest = static_cast<uint8_t>((oldest + 1) % kMostReadings);
+  oldest = static_cast<uint8_t>((oldest + 1) % kMaxReadings);
   count--;
   return reading;
 }

@@ -37,12 +37,12 @@ int16_t level(int8_t power, uint8_t low, int8_t reduction) {
 
 static_assert((kExchanged | kLeftReversed | kRightReversed) == 7,
               "a sound number has no other bits");
-static_assert(kMostBalance <= 100 && kMostLeast <= 100, "they need no limit");
+static_assert(kMaxBalance <= 100 && kMaxLeast <= 100, "they need no limit");
 
 tini_noinline bool is_sound(const Trim& trim) {
   return trim.wheels <= (kExchanged | kLeftReversed | kRightReversed) &&
-         static_cast<uint8_t>(trim.balance + kMostBalance) <= 2 * kMostBalance &&
-         trim.least <= kMostLeast;
+         static_cast<uint8_t>(trim.balance + kMaxBalance) <= 2 * kMaxBalance &&
+         trim.least <= kMaxLeast;
 }
 
 Levels trimmed_levels(const Trim& trim, int8_t left, int8_t right) {

@@ -16,7 +16,7 @@ constexpr uint8_t kBytesATurn = 8;
 constexpr Remark kWholeProgram = Remark::kOk;  // instead of a report: a whole program has come
 // After so many mistakes, answers stop until there is a pause of this length between two bytes: the
 // other side echoes or answers each line. The next one is told that.
-constexpr uint8_t kMostMistakes = 16;
+constexpr uint8_t kMaxMistakes = 16;
 constexpr uint16_t kPauseMs = 5000;
 // Silence after bytes without a line end: it is reported, or it ends the line if they lack line
 // ends.
@@ -282,12 +282,12 @@ inline Console::Act Console::end_line(bool is_heard) {
       break;
     case TextState::kProblem:
       is_ignoring_ = has_setup || was_waiting;
-      if (!has_mark_ && first_byte_ != '+' && !is_heard && mistakes_ <= kMostMistakes) {
+      if (!has_mark_ && first_byte_ != '+' && !is_heard && mistakes_ <= kMaxMistakes) {
         // after a SETUP word a module's word is a wrong one: it begins no program
         const uint8_t word = has_setup ? kSpokenCount : reader_.find_unknown(kSpokenWords);
         if (word < kChatterCount) break;
         is_talking_ = true;
-        say(mistakes_ == kMostMistakes ? Remark::kMute
+        say(mistakes_ == kMaxMistakes ? Remark::kMute
             : word < kSpokenCount      ? Remark::kHelp
                                        : Remark::kMistake);
         mistakes_++;

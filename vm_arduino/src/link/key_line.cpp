@@ -64,10 +64,10 @@ bool KeyLine::take_axis(int8_t* axis) {
   if (!is_digit(*cursor_)) return false;
   uint8_t number = 0;
   while (is_digit(*cursor_)) {
-    if (number > kMostPad / 10) return false;
+    if (number > kMaxPad / 10) return false;
     number = static_cast<uint8_t>(number * 10 + *cursor_++ - '0');
   }
-  if (number > kMostPad) return false;
+  if (number > kMaxPad) return false;
   *axis = static_cast<int8_t>(is_below ? -number : number);
   return true;
 }

@@ -372,7 +372,7 @@ Answer Link::hold(const RemoteKeys& remote_keys) {
   if (remote_keys.keys >= 1 << kRemoteKeys) return Answer::kBadValue;
   const int8_t* axis = remote_keys.pad;
   do {
-    if (static_cast<uint8_t>(*axis + kMostPad) > 2 * kMostPad) return Answer::kBadValue;
+    if (static_cast<uint8_t>(*axis + kMaxPad) > 2 * kMaxPad) return Answer::kBadValue;
   } while (++axis != remote_keys.pad + 2);
   remote_ = remote_keys;
   left_ms_[kHold] = kHoldMs;

@@ -98,7 +98,7 @@ Problem Reader::def_value_name(uint8_t token) {
     return token == ',' || token == ')' ? Problem::kValue : Problem::kReserved;
   }
   if (!take_word() && name_kind_ != kIsOfOtherDef) return Problem::kTaken;
-  if (def_->values >= kMostValues * kOneValue || variables_ == kVariables) return Problem::kLimit;
+  if (def_->values >= kMaxValues * kOneValue || variables_ == kVariables) return Problem::kLimit;
   add_name(static_cast<uint8_t>(kNameOfDef | variables_), 0);
   variables_++;
   def_->values = static_cast<uint8_t>(def_->values + kOneValue);

@@ -90,7 +90,7 @@ struct __attribute__((packed)) Reader::Def {
   SensorBits read;
 };
 constexpr uint8_t kOneValue = kVariables;
-constexpr uint8_t kMostValues = 4;
+constexpr uint8_t kMaxValues = 4;
 constexpr uint8_t kNameDef = 0x80;
 constexpr uint8_t kNameYesNo = 0x40;
 constexpr uint8_t kNameOfDef = 0x20;  // a value of a DEF: known while that is open

@@ -35,7 +35,7 @@ from tiniscript.link.messages import MAJOR, MINOR, OWNED, STOP_BYTES
 from tiniscript.link.wire import Wire
 
 TIMEOUT_S = 10
-MOST_ROWS = 20
+MAX_ROWS = 20
 CABLE_TIMEOUT_MS, RADIO_TIMEOUT_MS = 300, 700  # time for one try of an exchange
 # An Uno takes 1.4 s after its port was opened, and a Mega wants silence until then.
 BOOT_WAIT_MS = 1700
@@ -161,10 +161,10 @@ def report(
         summary["found"] = rows
         print(json.dumps(summary, indent=2, ensure_ascii=False))
         return int(bool(differing_verdicts))
-    for verdict in differing_verdicts[:MOST_ROWS]:
+    for verdict in differing_verdicts[:MAX_ROWS]:
         print("\n".join(_rows(verdict, timeout_s, language)))
-    if len(differing_verdicts) > MOST_ROWS:
-        say("conform_others", language, n=len(differing_verdicts) - MOST_ROWS)
+    if len(differing_verdicts) > MAX_ROWS:
+        say("conform_others", language, n=len(differing_verdicts) - MAX_ROWS)
     if len(verdicts) < case_count:
         say("conform_given_up", language)
     if lacking_count:

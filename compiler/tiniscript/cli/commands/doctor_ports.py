@@ -12,7 +12,7 @@ from tiniscript.cli import inputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.robot.connect import baud_of, open_client
-from tiniscript.cli.robot.in_reach import MOST_CHECKS_AT_ONCE, find_robots
+from tiniscript.cli.robot.in_reach import MAX_CHECKS_AT_ONCE, find_robots
 from tiniscript.cli.robot.port_rows import EMPTY_REACH, Row, lines, list_rows
 from tiniscript.cli.texts import Sentence, text
 from tiniscript.library import opening
@@ -46,7 +46,7 @@ def run(options: Namespace, language: str) -> int:
             is_absent = port in reachable_robots.absent_ports and row["held_by"] is None
             return absent_row if is_absent else _ask(port, baud, robot, language)
 
-        with ThreadPoolExecutor(MOST_CHECKS_AT_ONCE) as pool:
+        with ThreadPoolExecutor(MAX_CHECKS_AT_ONCE) as pool:
             for row, answer in zip(rows, pool.map(ask, rows), strict=True):
                 row.update(answer)
     if options.json:

@@ -7,7 +7,7 @@ from argparse import Namespace
 from pathlib import Path
 
 from tiniscript import robots
-from tiniscript.base.kit import MOST_SENSORS_BESIDE_REMOTE
+from tiniscript.base.kit import MAX_SENSORS_BESIDE_REMOTE
 from tiniscript.cli import inputs, outputs
 from tiniscript.cli.texts import say, say_aside, text
 from tiniscript.robots import firmware
@@ -22,7 +22,7 @@ def run(options: Namespace, language: str) -> int:
     robot = inputs.wired_robot(options, language).with_language(language)
     if not robot.kit.has_remote:
         say_aside(
-            "board_no_remote", language, robot=robot.name, most=str(MOST_SENSORS_BESIDE_REMOTE)
+            "board_no_remote", language, robot=robot.name, most=str(MAX_SENSORS_BESIDE_REMOTE)
         )
     if robots.is_path(options.robot):
         _compare(robot, language)

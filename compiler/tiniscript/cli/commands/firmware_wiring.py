@@ -16,7 +16,7 @@ from tiniscript.robots.wiring.page import rail_rows, wire_rows
 from tiniscript.robots.wiring.plan import plan_of
 
 COLUMN_GAP = "  "  # between columns
-LEAST_COLUMN_WIDTH = 16  # a column on a terminal that is too narrow for the table
+MIN_COLUMN_WIDTH = 16  # a column on a terminal that is too narrow for the table
 
 
 def run(options: Namespace, language: str) -> int:
@@ -56,7 +56,7 @@ def _print_rows(rows: list[tuple[str, ...]]) -> None:
     indent = sum(widths[:-1]) + len(COLUMN_GAP) * (len(widths) - 1)
     room = widths[-1]
     if sys.stdout.isatty():
-        room = min(room, max(LEAST_COLUMN_WIDTH, get_terminal_size().columns - indent - 1))
+        room = min(room, max(MIN_COLUMN_WIDTH, get_terminal_size().columns - indent - 1))
     for *row, last_cell in printable_rows:
         cells = COLUMN_GAP.join(
             set_cell_size(cell, width) for cell, width in zip(row, widths, strict=False)

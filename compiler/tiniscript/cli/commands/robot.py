@@ -35,7 +35,7 @@ from tiniscript.virtual.transports import Transports, can_have_terminal
 if TYPE_CHECKING:
     from tiniscript.virtual.announcement import Announcement
 
-MOST_MEMORY_BYTES = 1_000_000  # most bytes of a robot's memory file; an ESP32's has 16,640
+MAX_MEMORY_BYTES = 1_000_000  # most bytes of a robot's memory file; an ESP32's has 16,640
 SAVE_INTERVAL_S = 1.0  # interval between two looks at the robot's stored data
 QUIT_KEYS = "qQ\x04"
 
@@ -111,7 +111,7 @@ class _Stage:
                         self.simulator.push(pushes.pop(0)[1])
                     self.simulator.turn(self._timeout_s(pushes, end_ms))
                     self._print_events(robot.take_events())
-                    self._save_state(is_due=False)
+                    self._save_state(is_forced=False)
                     if not self._handle_keys(keys.read_keys()):
                         break
         except KeyboardInterrupt:
@@ -123,7 +123,7 @@ class _Stage:
                     self.picture.add_event(event)
                 self.screen.draw(self.picture, robot.now_ms)
                 self.screen.end()
-            self._save_state(is_due=True)
+            self._save_state(is_forced=True)
         if self.options.plot is not None:
             simulator_options.draw_picture(self.options, robot, self.language)
         print(simulator_options.summary(self.options, robot, self.language), file=sys.stderr)
@@ -193,15 +193,15 @@ class _Stage:
                 self.simulator.robot.power_cycle()
         return True
 
-    def _save_state(self, is_due: bool) -> None:
+    def _save_state(self, is_forced: bool) -> None:
         """Write the robot's EEPROM to its file, if it has changed."""
         if self.options.memory is None or not (
-            is_due or monotonic() > self._last_save_s + SAVE_INTERVAL_S
+            is_forced or monotonic() > self._last_save_s + SAVE_INTERVAL_S
         ):
             return
         self._last_save_s = monotonic()
         memory = self.simulator.robot.memory
-        if memory != self._saved_memory or is_due:
+        if memory != self._saved_memory or is_forced:
             outputs.write(Path(self.options.memory), memory, "unwritable_at --memory")
             self._saved_memory = memory
 
@@ -254,7 +254,7 @@ def _memory(name: str | None) -> bytes | None:
         )
     try:
         with Path(name).open("rb") as file:
-            return file.read(MOST_MEMORY_BYTES)
+            return file.read(MAX_MEMORY_BYTES)
     except FileNotFoundError:
         return None
     except (OSError, ValueError) as error:

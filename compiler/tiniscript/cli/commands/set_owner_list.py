@@ -64,7 +64,7 @@ def _import(key_file: KeyFile, name: str, language: str) -> None:
         changed_count = key_file.add(imported_keys)
     except TooManyKeys:
         raise CommandError(
-            2, "too_many_keys", most=str(keys.MOST_KEYS), file=printable_name(name)
+            2, "too_many_keys", most=str(keys.MAX_KEYS), file=printable_name(name)
         ) from None
     except BadKeys as error:
         raise _key_file_error(key_file, "own_keys_full", error) from None

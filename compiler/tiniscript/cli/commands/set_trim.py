@@ -15,8 +15,8 @@ from tiniscript.cli.options import thousandths, whole_number
 from tiniscript.cli.robot.connect import Connection, connect
 from tiniscript.cli.robot.description import trim_in_words
 from tiniscript.cli.robot.trim_wizard import guide
-from tiniscript.link.messages import MOST_BALANCE, MOST_LEAST
-from tiniscript.link.trim import MOST_PACE, Pace, Trim, trim_from_reply
+from tiniscript.link.messages import MAX_BALANCE, MAX_LEAST
+from tiniscript.link.trim import MAX_PACE, Pace, Trim, trim_from_reply
 
 
 def run(options: Namespace, language: str) -> int:
@@ -63,16 +63,16 @@ def _trim_options(options: Namespace, language: str) -> dict[str, Any]:
             fields[name] = word == "yes"
     if options.balance is not None:
         fields["balance"] = whole_number(
-            "--balance", options.balance, 0, -MOST_BALANCE, MOST_BALANCE, language
+            "--balance", options.balance, 0, -MAX_BALANCE, MAX_BALANCE, language
         )
     for name in Pace._fields:
         text: str | None = getattr(options, name)
         if text is not None:
-            option, most_thousandths = f"--{name.replace('_', '-')}", round(MOST_PACE * ONE)
+            option, most_thousandths = f"--{name.replace('_', '-')}", round(MAX_PACE * ONE)
             size = thousandths(option, text.replace(",", "."), 0, 0, most_thousandths, language)
             fields[name] = size / ONE
     if options.least is not None:
-        fields["least"] = whole_number("--least", options.least, 0, 0, MOST_LEAST, language)
+        fields["least"] = whole_number("--least", options.least, 0, 0, MAX_LEAST, language)
     return fields
 
 

@@ -15,7 +15,7 @@ from tiniscript.cli.robot.connect import Connection, connect
 from tiniscript.cli.terminal import asking
 from tiniscript.cli.texts import text
 from tiniscript.link.messages import (
-    LEAST_PASSWORD,
+    MIN_PASSWORD,
     NETWORK_BYTES,
     OWNED,
     PASSWORD_BYTES,
@@ -77,7 +77,7 @@ def _refuse_over_wifi(connection: Connection) -> None:
 
 def _join(connection: Connection, name: bytes, is_access_point: bool) -> None:
     prompt = text("wifi_password", connection.language)
-    password = asking.ask_password(prompt, LEAST_PASSWORD, PASSWORD_BYTES, "wifi_bad_password")
+    password = asking.ask_password(prompt, MIN_PASSWORD, PASSWORD_BYTES, "wifi_bad_password")
     network = Network(name, password, is_access_point)
     connection.request(lambda session: session.join(network))
     ask = partial(_wifi_state, connection)

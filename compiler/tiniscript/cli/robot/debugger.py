@@ -20,7 +20,7 @@ from tiniscript.library.source_map import MapLocation, SourceMap
 from tiniscript.link.connection import Requester
 from tiniscript.link.messages import (
     BREAKPOINTS,
-    MOST_BREAKPOINTS,
+    MAX_BREAKPOINTS,
     RESUME_GO,
     RESUME_STEP,
     STATUSES,
@@ -30,7 +30,7 @@ from tiniscript.link.outcomes import Event
 from tiniscript.link.requests import Reply
 
 STEP_KEYS, GO_KEYS = "sS \n\r", "gG"  # keys
-MOST_LINES = 10**6
+MAX_LINES = 10**6
 
 
 class HaltableProgram(NamedTuple):
@@ -54,9 +54,9 @@ class HaltableProgram(NamedTuple):
 
 def parse_lines(typed_lines: Sequence[str], language: str) -> tuple[int, ...]:
     """Return the lines of `--break`. Raises CommandError."""
-    lines = {whole_number("--break", line, 1, 1, MOST_LINES, language) for line in typed_lines}
-    if len(lines) > MOST_BREAKPOINTS:
-        raise CommandError(2, "break_most", most=str(MOST_BREAKPOINTS))
+    lines = {whole_number("--break", line, 1, 1, MAX_LINES, language) for line in typed_lines}
+    if len(lines) > MAX_BREAKPOINTS:
+        raise CommandError(2, "break_most", most=str(MAX_BREAKPOINTS))
     return tuple(sorted(lines))
 
 

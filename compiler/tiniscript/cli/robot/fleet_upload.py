@@ -16,7 +16,7 @@ from tiniscript.cli.robot.event_printer import EventPrinter
 from tiniscript.cli.robot.fleet import run_together
 from tiniscript.cli.robot.member import Member, Result
 from tiniscript.cli.robot.run_monitor import Saving
-from tiniscript.cli.terminal.progress import MOST_PERCENT
+from tiniscript.cli.terminal.progress import MAX_PERCENT
 from tiniscript.cli.texts import text
 from tiniscript.robots.profile import Robot
 
@@ -43,7 +43,7 @@ def _upload(
     member.meet_robot(connection)
 
     def draw_progress(done_bytes: int) -> None:
-        member.set_state("crew_sending", percent=min(100 * done_bytes // code_bytes, MOST_PERCENT))
+        member.set_state("crew_sending", percent=min(100 * done_bytes // code_bytes, MAX_PERCENT))
 
     draw_progress(0)
     receipt_reply = program_upload.send_program(connection, ready_program, options, draw_progress)

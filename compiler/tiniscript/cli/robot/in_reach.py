@@ -114,7 +114,7 @@ def _name_robots(
     return reach
 
 
-MOST_CHECKS_AT_ONCE = 16  # servers that are checked at the same time
+MAX_CHECKS_AT_ONCE = 16  # servers that are checked at the same time
 
 
 def ports_in_use(is_virtual: bool = False) -> list[str]:
@@ -135,7 +135,7 @@ def running_servers() -> list[Registration]:
     registrations = find_all()
     if len(registrations) < 2:  # starting threads takes longer than one answer
         return list(filter(is_alive, registrations))
-    with ThreadPoolExecutor(MOST_CHECKS_AT_ONCE) as pool:
+    with ThreadPoolExecutor(MAX_CHECKS_AT_ONCE) as pool:
         return list(compress(registrations, pool.map(is_alive, registrations)))
 
 

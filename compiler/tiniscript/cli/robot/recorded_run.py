@@ -25,7 +25,7 @@ from tiniscript.studio.playing import (
     PlayedRun,
     prepare,
 )
-from tiniscript.studio.recordings import MOST_MS, VIRTUAL, BadRecording, Row
+from tiniscript.studio.recordings import MAX_MS, VIRTUAL, BadRecording, Row
 from tiniscript.studio.simulation import Simulation
 from tiniscript.virtual.robot import Settings
 
@@ -61,7 +61,7 @@ def record(program_input: Input, options: Namespace, language: str) -> int:
     source = source_text(program_input)
     robot = inputs.robot_for(program_input, options, language)
     require_known_robot(robot)
-    max_ms = thousandths("--max-time", options.max_time, LONGEST_RUN_MS, 0, MOST_MS, language)
+    max_ms = thousandths("--max-time", options.max_time, LONGEST_RUN_MS, 0, MAX_MS, language)
     seed = whole_number("--seed", options.seed, 1, 1, 2**32 - 1, language)
     message = sensor_lists(options.sensor, robot, language)
     world, form = recordings.stored_form(world_of(options, language))

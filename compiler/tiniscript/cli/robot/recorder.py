@@ -19,7 +19,7 @@ from tiniscript.cli.errors import CommandError, unwritable_error
 from tiniscript.cli.inputs import printable_name
 from tiniscript.link.payloads import ReadingEvent
 from tiniscript.studio import recordings
-from tiniscript.studio.recordings import END, MOST_MS, Row
+from tiniscript.studio.recordings import END, MAX_MS, Row
 
 
 class Rows:
@@ -149,4 +149,4 @@ class Recorder:
 
     def _add_end_row(self, ms: int) -> None:
         self._is_over = True
-        self._rows.add_line(recordings.encode_row(Row(min(ms, MOST_MS), END)))
+        self._rows.add_line(recordings.encode_row(Row(min(ms, MAX_MS), END)))

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 LONGEST_ROUND_S = 1.0  # the longest round; a robot draws at least 15 pictures per second
 SENT_EVENTS = ("SHOW", "DONE", "FAULT", "STOP")  # events that the robot also sends to its client
-MOST_EVENTS = 10_000  # most events that wait to be read; the oldest are dropped
+MAX_EVENTS = 10_000  # most events that wait to be read; the oldest are dropped
 
 
 def running_address(options: Namespace) -> str | None:
@@ -69,8 +69,8 @@ class CommandSimulator(SimulatorThread):
         self._frame_s = 0.0
         self._draw_lock = RLock()
         self._round_bell = Bell()
-        self._undrawn_events: deque[Event] = deque(maxlen=MOST_EVENTS)
-        self._told_events: deque[Event] = deque(maxlen=MOST_EVENTS)  # values of `told_ms`
+        self._undrawn_events: deque[Event] = deque(maxlen=MAX_EVENTS)
+        self._told_events: deque[Event] = deque(maxlen=MAX_EVENTS)  # values of `told_ms`
         self._round_count = 0  # rounds after which the picture is up to date
         robot = simulator_options.make_robot(options, profile, language)
         super().__init__(robot, options.verb, hurry, faults)

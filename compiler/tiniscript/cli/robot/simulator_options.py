@@ -20,9 +20,9 @@ from tiniscript.virtual.robot import Settings, VirtualRobot
 from tiniscript.virtual.world import World, WorldRefused
 
 ONE = 1000  # thousandths
-MOST_NOISE = 50 * ONE  # percent
-MOST_FAULTS = 200 * ONE  # most faults in 1000 bytes
-MOST_HURRY = 10_000 * ONE
+MAX_NOISE = 50 * ONE  # percent
+MAX_FAULTS = 200 * ONE  # most faults in 1000 bytes
+MAX_HURRY = 10_000 * ONE
 LONGEST_S = 1_000_000 * ONE
 MOTOR_LOW, MOTOR_HIGH = 10 * ONE, 200 * ONE  # percent
 
@@ -43,7 +43,7 @@ def make_robot(
     check_picture(options)
     world = world_of(options, language)
     seed = whole_number("--seed", options.seed, 1, 1, 2**32 - 1, language)
-    noise = number("--noise", options.noise, 0, 0, MOST_NOISE, language) / 100
+    noise = number("--noise", options.noise, 0, 0, MAX_NOISE, language) / 100
     motors = _motors(options.motors, language)
     reading_lists = sensor_lists(options.sensor, profile, language)
     settings = Settings(
@@ -78,11 +78,11 @@ def hurry_of(options: Namespace, language: str) -> float:
         return 0.0
     if options.hurry is not None and decimal(options.hurry) is None:
         raise CommandError(2, "bad_hurry", found=printable_name(options.hurry) or "''")
-    return number("--hurry", options.hurry, ONE, ONE // 10, MOST_HURRY, language)
+    return number("--hurry", options.hurry, ONE, ONE // 10, MAX_HURRY, language)
 
 
 def faults_of(options: Namespace, language: str) -> float:
-    return number("--faults", options.faults, 0, 0, MOST_FAULTS, language)
+    return number("--faults", options.faults, 0, 0, MAX_FAULTS, language)
 
 
 def end_ms(options: Namespace, language: str) -> int | None:

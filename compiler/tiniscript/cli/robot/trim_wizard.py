@@ -14,9 +14,9 @@ from tiniscript.cli.robot.conversation import ANSWER_YES, Conversation, NoPerson
 from tiniscript.cli.texts import say_aside
 from tiniscript.cli.texts.causes import label, sentences_of
 from tiniscript.doctor.findings import Finding, sure_finding
-from tiniscript.link.messages import MOST_BALANCE, MOST_LEAST
+from tiniscript.link.messages import MAX_BALANCE, MAX_LEAST
 from tiniscript.link.requests import ACCEPTING_STATUSES
-from tiniscript.link.trim import MOST_PACE, Pace, Trim
+from tiniscript.link.trim import MAX_PACE, Pace, Trim
 
 MEASURED_POWERS = 40, 80  # percent: it is seen and measured at both
 DRIVE_S, TURN_S = 2, 1  # how long to measure
@@ -24,12 +24,12 @@ INCH_CM = 2.54
 NUMBER_PATTERN = r"([0-9]{1,4}(?:[.,][0-9]{1,3})?)"
 INCH_WORDS = ("in", "inch", "inches", "pulg", "pulgada", "pulgadas", '"')
 DEGREE_SIGNS = ("°", "º")
-LEAST_STEP = 5  # percent
+MIN_STEP = 5  # percent
 FIRST_STEP = 16  # percent of balance; halved each time that the drift changes side
 ANSWER_REPEAT = 4
 # failures after a stop by another command
 STOPPED_KEYS = ("stopped_elsewhere", "stopped_midway", "plain")
-MOST_TRIES = 4
+MAX_TRIES = 4
 
 
 def guide(connection: Connection, old_trim: Trim) -> Trim:
@@ -54,7 +54,7 @@ def _is_reachable(error: CommandError) -> bool:
 
 def _restore_trim(connection: Connection, old_trim: Trim) -> None:
     """Restore the robot's former trim, with retries: a stop may still be in progress."""
-    for _ in range(MOST_TRIES - 1):
+    for _ in range(MAX_TRIES - 1):
         try:
             connection.request(lambda session: session.trim(old_trim.data()), ACCEPTING_STATUSES)
         except CommandError as error:
@@ -112,11 +112,11 @@ class TrimWizard(Conversation):
 
     def _find_least_power(self) -> int:
         """Return the smallest power that moves both wheels, or 0 if the smallest step does."""
-        for power in range(LEAST_STEP, MOST_LEAST + 1, LEAST_STEP):
+        for power in range(MIN_STEP, MAX_LEAST + 1, MIN_STEP):
             self.run_line(f"M({power}, {power}); W(1); M(0, 0)")
             if self.ask_choice("trim_moves", 2, n=str(power)) == ANSWER_YES:
-                return power if power > LEAST_STEP else 0
-        raise self._error_for(sure_finding("too_weak", n=str(MOST_LEAST)))
+                return power if power > MIN_STEP else 0
+        raise self._error_for(sure_finding("too_weak", n=str(MAX_LEAST)))
 
     def _measure(self, move: str, seconds: int, question: str) -> list[float]:
         """Return the distance or angle per second at each power."""
@@ -137,7 +137,7 @@ class TrimWizard(Conversation):
             answer = self.ask(question, n=str(power))
             while answer:
                 measure = parse_measure(answer, move == "R")
-                if measure is not None and measure <= MOST_PACE * seconds:
+                if measure is not None and measure <= MAX_PACE * seconds:
                     return measure
                 say_aside(f"{question}_number", self.language)
                 answer = self.ask(question, n=str(power))
@@ -159,8 +159,8 @@ class TrimWizard(Conversation):
                 step = max(1, step // 2)
             last_side = side
             balance = trim.balance + side * step
-            if abs(balance) > MOST_BALANCE:
-                raise self._error_for(sure_finding("too_uneven", n=str(MOST_BALANCE)))
+            if abs(balance) > MAX_BALANCE:
+                raise self._error_for(sure_finding("too_uneven", n=str(MAX_BALANCE)))
             trim = trim._replace(balance=balance)
             self._set_trim(trim)
 

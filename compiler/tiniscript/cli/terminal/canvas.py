@@ -15,7 +15,7 @@ DOTS_PER_COLUMN, DOTS_PER_ROW = 2, 4  # dots of a character
 _BLANK = 0x2800  # the braille character without dots
 # Bits of the dots, by row and column.
 _DOT_BITS = ((0x01, 0x08), (0x02, 0x10), (0x04, 0x20), (0x40, 0x80))
-_MOST_STEPS = 10_000  # steps of a line: one that is longer has its dots further apart
+_MAX_STEPS = 10_000  # steps of a line: one that is longer has its dots further apart
 
 Dot = tuple[int, int]
 
@@ -38,7 +38,7 @@ class Canvas:
     def draw_lines(self, dots: Iterable[Dot]) -> None:
         """Draw straight lines from dot to dot."""
         for (ax, ay), (bx, by) in pairwise(dots):
-            steps = min(max(abs(bx - ax), abs(by - ay), 1), _MOST_STEPS)
+            steps = min(max(abs(bx - ax), abs(by - ay), 1), _MAX_STEPS)
             for k in range(steps + 1):
                 x = ax + ((bx - ax) * k * 2 + steps) // (2 * steps)
                 y = ay + ((by - ay) * k * 2 + steps) // (2 * steps)

@@ -20,8 +20,8 @@ from tiniscript.cli.terminal.screen import Screen
 from tiniscript.link.outcomes import Event, ShownEvent
 
 SHOWN_SECONDS = 30  # seconds from the left edge to the right one
-MOST_ROWS = 12  # most rows of a plot
-MOST_VALUES = 5000  # values of a curve, the newest
+MAX_ROWS = 12  # most rows of a plot
+MAX_VALUES = 5000  # values of a curve, the newest
 STYLES = ("cyan", "magenta", "yellow", "green", "blue", "red")  # one style for each curve
 NAMELESS_CURVE = "SHOW"  # the curve of all values without a name
 AXIS_STEPS = 4  # between the marks of the axis, about
@@ -80,7 +80,7 @@ class Plot:
                 self.values_by_name, key=lambda curve_name: self.values_by_name[curve_name][-1][0]
             )
             del self.values_by_name[oldest], self.style_by_name[oldest]
-        self.values_by_name[name] = deque(maxlen=MOST_VALUES)
+        self.values_by_name[name] = deque(maxlen=MAX_VALUES)
         self.style_by_name[name] = next(
             style for style in STYLES if style not in self.style_by_name.values()
         )
@@ -94,7 +94,7 @@ class Plot:
                 values.popleft()
         shown_values = [value for _, value in chain.from_iterable(self.values_by_name.values())]
         low, high, step = scale(min(shown_values, default=0), max(shown_values, default=1000))
-        rows = min(MOST_ROWS, height - 1)
+        rows = min(MAX_ROWS, height - 1)
         ticks = [as_text(value) for value in range(low, high + 1, step)]
         # The margin never shrinks.
         self.margin = max(self.margin, *(len(tick) + 1 for tick in ticks))

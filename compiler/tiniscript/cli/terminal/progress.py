@@ -15,7 +15,7 @@ from tiniscript.cli.texts import text
 
 DRAW_DELAY_S = 0.3
 BAR_COLUMNS = 30
-MOST_PERCENT = 99  # percent shown until the work is done
+MAX_PERCENT = 99  # percent shown until the work is done
 
 
 class Progress:
@@ -37,7 +37,7 @@ class Progress:
         """Draw it where it has grown; return whether it has."""
         if not self._is_terminal or not self.total or monotonic() - self._begin_s < DRAW_DELAY_S:
             return False
-        percent = min(100 * done_units // self.total, MOST_PERCENT)
+        percent = min(100 * done_units // self.total, MAX_PERCENT)
         full_columns = BAR_COLUMNS * percent // 100
         line = (
             f"{self.label} [{'#' * full_columns}{'.' * (BAR_COLUMNS - full_columns)}] {percent:3} %"

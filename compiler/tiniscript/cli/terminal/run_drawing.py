@@ -20,8 +20,8 @@ from tiniscript.cli.terminal.sketch import Sketch
 from tiniscript.cli.texts import text
 from tiniscript.robots.profile import Robot
 
-MOST_SHOWN_VALUES = 5  # values of SHOW that stay in the picture
-MOST_VALUE_COLUMNS = 80  # columns of the values, if the path leaves that many
+MAX_SHOWN_VALUES = 5  # values of SHOW that stay in the picture
+MAX_VALUE_COLUMNS = 80  # columns of the values, if the path leaves that many
 COLUMNS_FOR_VALUES_BESIDE = 60  # columns from which on the values are beside the path, not below it
 
 
@@ -63,7 +63,7 @@ class Picture:
         self.now_ms = 0  # time of the newest event
         self.value_by_sensor: dict[int, int] = {}
         self.value_by_actuator: dict[int, int] = {}
-        self.shown_values: deque[str] = deque(maxlen=MOST_SHOWN_VALUES)
+        self.shown_values: deque[str] = deque(maxlen=MAX_SHOWN_VALUES)
         self.hertz, self.silent_ms = 0, 0  # the newest note, and when it ends
         self.ending = ""
         self.column_widths = [0, 0]  # columns of values and units, so far
@@ -92,7 +92,7 @@ class Picture:
         room = max(1, height - 1)  # below the title
         if width >= COLUMNS_FOR_VALUES_BESIDE:
             columns = self.sketch.fit_columns(width - min(44, width * 11 // 20) - 2, room)
-            value_lines = self._values(min(MOST_VALUE_COLUMNS, width - columns - 2), room, now_ms)
+            value_lines = self._values(min(MAX_VALUE_COLUMNS, width - columns - 2), room, now_ms)
             way_lines = self.sketch.draw(columns, room, now_ms)
             value_lines += [Text()] * (room - len(value_lines))
             for line in way_lines:

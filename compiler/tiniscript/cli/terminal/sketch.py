@@ -23,7 +23,7 @@ from tiniscript.cli.terminal.canvas import (
 from tiniscript.robots.kinematics import START, Pose, Way
 from tiniscript.robots.profile import Robot
 
-MOST_CORNERS = 5000  # most points of the path that stay in the picture
+MAX_CORNERS = 5000  # most points of the path that stay in the picture
 WAY_STYLE, ROBOT_STYLE = "cyan", "bold green"
 ARROWS = "↑↖←↙↓↘→↗"  # every 45 degrees, counterclockwise from straight ahead
 _ROUND_SCALES = (
@@ -87,8 +87,8 @@ class Sketch:
 
     def set_motors(self, now_ms: float, left: int, right: int) -> None:
         self.way.set_motors(now_ms, left, right)
-        if len(self.way.corners) > MOST_CORNERS:
-            self.way.thin_out(MOST_CORNERS // 2)
+        if len(self.way.corners) > MAX_CORNERS:
+            self.way.thin_out(MAX_CORNERS // 2)
             self.canvas.clear()
             self.drawn_corner_count = 0
 

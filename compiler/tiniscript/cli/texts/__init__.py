@@ -13,7 +13,7 @@ from tiniscript.base import languages
 from tiniscript.base.source import printable
 
 CATALOGUE = "command"
-MOST_VALUE_CHARACTERS = 2000  # characters of a value in a sentence
+MAX_VALUE_CHARACTERS = 2000  # characters of a value in a sentence
 # The words that follow a number, in singular and plural; catalogues have both forms. Other words
 # have a sentence of their own for one.
 COUNTED_NOUNS = ("counted_bytes", "counted_checks")
@@ -49,7 +49,7 @@ class Sentence(str):
 
 def _printable(value: object) -> object:
     if isinstance(value, str) and not isinstance(value, Sentence):
-        return printable(value, MOST_VALUE_CHARACTERS)
+        return printable(value, MAX_VALUE_CHARACTERS)
     return value
 
 

@@ -20,7 +20,7 @@ from tiniscript.semantics.ir import Term
 from tiniscript.semantics.optimizer import constant
 from tiniscript.semantics.ways import timed_move
 
-MOST_COLUMNS = 100  # columns of a line with its comment
+MAX_COLUMNS = 100  # columns of a line with its comment
 COMMENT_COLUMN = 40  # column of the comments after code
 _MOVE_FUNCTIONS = {"F": "forward", "B": "backward", "L": "turn_left", "R": "turn_right"}
 _START_FUNCTIONS = {
@@ -92,12 +92,10 @@ class Statements:
         code_line = f"{indent}{code}"
         if comment:
             commented_line = f"{code_line:<{COMMENT_COLUMN - 2}}  // {comment}"
-            if len(commented_line) <= MOST_COLUMNS:
+            if len(commented_line) <= MAX_COLUMNS:
                 code_line = commented_line
             else:
-                self.lines.append(
-                    f"{indent}// {_truncate(comment, MOST_COLUMNS - len(indent) - 3)}"
-                )
+                self.lines.append(f"{indent}// {_truncate(comment, MAX_COLUMNS - len(indent) - 3)}")
         self.lines.append(code_line)
 
     def instruction_text(self, start: int) -> str:
@@ -125,7 +123,7 @@ class Statements:
         while self.pending_comments and (
             self.pending_comments[-1].start < start or self.pending_comments[-1].line == line
         ):
-            for row in _rows(self.pending_comments.pop().text, MOST_COLUMNS - 2 * self.depth - 3):
+            for row in _rows(self.pending_comments.pop().text, MAX_COLUMNS - 2 * self.depth - 3):
                 self.add_line(f"// {row}")
 
     def add_remaining_comments(self) -> None:

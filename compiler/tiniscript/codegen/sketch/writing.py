@@ -67,7 +67,7 @@ def _needs_arithmetic(term: ir.Term) -> bool:
                                                "TIME")  # fmt: skip
 
 
-MOST_COLUMNS = 98
+MAX_COLUMNS = 98
 _WORD = re.compile(r"\$(\w+?)(?=_\$|_PIN\b|\b)")
 BOARD_TITLES = {"uno": "Uno", "nano": "Nano", "mega": "Mega 2560"}
 
@@ -478,4 +478,4 @@ def _heading(text: str) -> str:
 
 
 def _wrap(text: str, first_indent: str, next_indent: str) -> list[str]:
-    return wrap(text, MOST_COLUMNS, initial_indent=first_indent, subsequent_indent=next_indent)
+    return wrap(text, MAX_COLUMNS, initial_indent=first_indent, subsequent_indent=next_indent)

@@ -17,13 +17,13 @@ from tiniscript.base.source import Span
 from tiniscript.base.words import EXTENTS, FUNCTIONS, TASKS, WORDS, Word
 from tiniscript.bytecode.opcodes import SHORTS
 from tiniscript.codegen.lower_expression import push_bytes
-from tiniscript.syntax.blocks import ENDS
+from tiniscript.syntax.blocks import WORD_OF_END
 from tiniscript.syntax.cursor import INSTRUCTION_ENDS
 from tiniscript.syntax.later_words import kit_for_tokens
 from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, WORD, Token
 from tiniscript.syntax.operators import AND, BINARY, MINUS, NOT, OPEN
 
-MOST_BRACKETS = 254  # open at once
+MAX_BRACKETS = 254  # open at once
 _BLOCK_BYTES = 3  # bytes of a block, without its three sets of sensors
 _DEF_BYTES = 6  # bytes before a DEF's name and its set of sensors
 _JUMP_BYTES = 2  # bytes of an instruction with a short jump
@@ -84,7 +84,7 @@ class Reader:
         self.used_bytes = 0  # bytes used from the other end
         self.open_brackets = 0
         self.has_extent_unit = False  # whether the last brackets had a unit of length or angle
-        self.extra_bracket_span: Span | None = None  # the first bracket after MOST_BRACKETS
+        self.extra_bracket_span: Span | None = None  # the first bracket after MAX_BRACKETS
         self.sensors = {
             device.name: k for k, device in enumerate(kit_for_tokens(tokens, kit).readings)
         }
@@ -153,7 +153,7 @@ class Reader:
     def open_bracket(self) -> None:
         self.i += 1
         self.open_brackets += 1
-        if self.open_brackets > MOST_BRACKETS and self.extra_bracket_span is None:
+        if self.open_brackets > MAX_BRACKETS and self.extra_bracket_span is None:
             self.extra_bracket_span = self.tokens[self.i - 1].span
 
     # -- instructions -------------------------------------------------------------------------
@@ -171,8 +171,8 @@ class Reader:
         word = WORDS.get(token.text)
         if word is None:
             self.read_name(token.text)
-        elif token.text in ENDS:
-            self.close(ENDS[token.text])
+        elif token.text in WORD_OF_END:
+            self.close(WORD_OF_END[token.text])
         elif token.text == "DEF":
             name = self.take().text
             self.add_name(name, self.def_bytes)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from tiniscript.base.languages import find_text
 
-MOST_CHARACTERS = 40  # characters of a text
+MAX_CHARACTERS = 40  # characters of a text
 
 # Problems by number, starting with 1. A message begins with a column; that of RANGE also with the
 # value's number and its least value, and ends with the largest. fmt: off

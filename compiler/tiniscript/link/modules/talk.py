@@ -28,7 +28,7 @@ from tiniscript.link.modules.dialects import (
 )
 from tiniscript.link.wire import Wire
 
-MOST_VERSION_CHARACTERS = 60  # characters of a version
+MAX_VERSION_CHARACTERS = 60  # characters of a version
 TRIES = 2  # the first command after power-on may meet half a command of before
 
 
@@ -72,7 +72,7 @@ def find_module(
             line_end = _find_line_ending(wire)
             if line_end is not None:
                 dialect, version = _identify_dialect(wire, line_end)
-                return Module(dialect, baud, version[:MOST_VERSION_CHARACTERS])
+                return Module(dialect, baud, version[:MAX_VERSION_CHARACTERS])
     return None
 
 

@@ -14,8 +14,8 @@ from tiniscript.link.connection import PendingRequest, Requester
 from tiniscript.link.messages import (
     BY_NAME,
     KEYS,
-    LEAST_PASSWORD,
-    MOST_BREAKPOINTS,
+    MAX_BREAKPOINTS,
+    MIN_PASSWORD,
     NETWORK_BYTES,
     PACE_BYTES,
     PASSWORD_BYTES,
@@ -28,8 +28,8 @@ from tiniscript.link.sharing import protocol
 from tiniscript.link.sharing.protocol import BadMessage, JsonMessage
 from tiniscript.link.wifi import BrokerSettings, Network, Tls
 
-MOST_CODE_BYTES = 0x7FFF  # the largest value in an image's header
-MOST_LATER_BYTES = 0xFF - HEADER_BYTES  # the largest value of the field
+MAX_CODE_BYTES = 0x7FFF  # the largest value in an image's header
+MAX_LATER_BYTES = 0xFF - HEADER_BYTES  # the largest value of the field
 T = TypeVar("T")
 
 
@@ -141,7 +141,7 @@ def _pressed_keys(message: JsonMessage) -> tuple[object, ...]:
 
 
 def _places(message: JsonMessage) -> tuple[int, ...]:
-    data = _bytes(message, "places", 0, 2 * MOST_BREAKPOINTS)
+    data = _bytes(message, "places", 0, 2 * MAX_BREAKPOINTS)
     if len(data) % 2:
         raise BadMessage
     return tuple(place for (place,) in iter_unpack("<H", data))
@@ -160,7 +160,7 @@ def _kit(message: JsonMessage) -> int:
 
 def _network(message: JsonMessage) -> Network:
     name = _bytes(message, "name", 1, NETWORK_BYTES)
-    password = _bytes(message, "password", LEAST_PASSWORD, PASSWORD_BYTES)
+    password = _bytes(message, "password", MIN_PASSWORD, PASSWORD_BYTES)
     if b"\0" in name + password:
         raise BadMessage
     return Network(name, password, protocol.read_field(message, "is_access_point", bool))
@@ -194,10 +194,10 @@ def _image(message: JsonMessage) -> Image:
     return Image(
         start,
         _bounded_number(message, "devices", 1 << 16),
-        _bytes(message, "code", 0, MOST_CODE_BYTES),
+        _bytes(message, "code", 0, MAX_CODE_BYTES),
         _bounded_number(message, "checksum", 1 << 32),
         (major, minor),
-        _bytes(message, "later_fields", 0, MOST_LATER_BYTES),
+        _bytes(message, "later_fields", 0, MAX_LATER_BYTES),
         # Without this field, the image is of version 2.0.
         _bounded_number(message, "needs", 1 << 8, 0),
     )

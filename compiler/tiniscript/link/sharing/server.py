@@ -41,8 +41,8 @@ from tiniscript.link.sharing.registry import Registration
 from tiniscript.link.sharing.requests import is_detached, request_maker
 
 GREETING_S = 2.0  # timeout for a new client's greeting
-MOST_CLIENTS = 64  # most clients at a time, and most connections without a greeting
-MOST_REQUESTS = 8  # most requests of one client at a time
+MAX_CLIENTS = 64  # most clients at a time, and most connections without a greeting
+MAX_REQUESTS = 8  # most requests of one client at a time
 FULL_BYTES = 200_000  # bytes in the send buffer over which a client misses values
 TOO_FULL_BYTES = 1_000_000  # bytes in the send buffer over which a client is disconnected
 FULL_S = 0.02  # pause before the next try when the process has too many files open
@@ -207,10 +207,10 @@ class Server:
             sleep(FULL_S)
             return
         strangers = [client for client in self._clients if not client.verb]
-        if len(self._clients) - len(strangers) >= MOST_CLIENTS:
+        if len(self._clients) - len(strangers) >= MAX_CLIENTS:
             peer.close()
             return
-        if len(strangers) >= MOST_CLIENTS:
+        if len(strangers) >= MAX_CLIENTS:
             self._drop_oldest_stranger()
         peer.setblocking(False)
         with suppress(OSError):  # the client has left already
@@ -272,7 +272,7 @@ class Server:
         """Begin a client's request."""
         number = protocol.read_int(message, "id")
         limit_ms = min(max(1, protocol.read_int(message, "limit_ms")), 60_000)
-        if number in client.requests or len(client.requests) >= MOST_REQUESTS:
+        if number in client.requests or len(client.requests) >= MAX_REQUESTS:
             raise BadMessage
         robot = self._connection.robot
         if message["do"] == "hello" and robot and self._connection.session.is_open:  # already known

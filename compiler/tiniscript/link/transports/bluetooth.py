@@ -30,7 +30,7 @@ CONNECT_S = 15.0
 QUEUE_S = 60.0  # timeout of a queued operation, including its wait for other connections
 CLOSE_S = 5.0  # BlueZ takes 2 s
 UART_BITS = 10  # bits of a byte, including start and stop
-LEAST_WRITE_BYTES = 20  # bytes of a write before more is negotiated
+MIN_WRITE_BYTES = 20  # bytes of a write before more is negotiated
 
 T = TypeVar("T")
 
@@ -39,7 +39,7 @@ class UartService(NamedTuple):
     """A way of sending bytes over Bluetooth LE.
 
     `is_paced`: the module loses bytes that arrive faster than its UART passes them on, and accepts
-    at most LEAST_WRITE_BYTES in one write, whatever was negotiated.
+    at most MIN_WRITE_BYTES in one write, whatever was negotiated.
     """
 
     service_uuid: str
@@ -174,10 +174,10 @@ class BluetoothPort(PushedTransport):
         time = asyncio.get_running_loop().time
         needs_response = "write-without-response" not in self._write_characteristic.properties
         while data:
-            size = LEAST_WRITE_BYTES
+            size = MIN_WRITE_BYTES
             if not self._is_paced:
                 size = max(
-                    LEAST_WRITE_BYTES, self._write_characteristic.max_write_without_response_size
+                    MIN_WRITE_BYTES, self._write_characteristic.max_write_without_response_size
                 )
             piece, data = data[:size], data[size:]
             await asyncio.sleep(self._ready_s - time())

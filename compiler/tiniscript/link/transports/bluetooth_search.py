@@ -32,7 +32,7 @@ LINGER_S = 1.5
 LIST_S = 4.0  # time to list all robots
 LEAVE_S = 3.0  # timeout of the end of a scan
 MAX_NAMES_SHOWN = 8  # names in a sentence
-MOST_DEVICES = 1000  # most devices that a scan keeps
+MAX_DEVICES = 1000  # most devices that a scan keeps
 
 _Unavailable = BleakBluetoothNotAvailableReason
 _FORBIDDEN = (
@@ -105,7 +105,7 @@ class _Scan:
         self._keep_device(SeenDevice(device, name, is_robot))
 
     def _keep_device(self, seen_device: SeenDevice) -> None:
-        if seen_device.address in self.seen_devices or len(self.seen_devices) < MOST_DEVICES:
+        if seen_device.address in self.seen_devices or len(self.seen_devices) < MAX_DEVICES:
             self.seen_devices[seen_device.address] = seen_device
             self.change_event.set()
             self.change_event = asyncio.Event()

@@ -37,10 +37,10 @@ LIST_S = 10.0  # time for a broker to send its retained messages
 LEAVE_S = 0.5
 PATIENCE_S = 4.0  # a robot frees its place when a client that was killed has been silent for 3 s
 QUIET_S = 0.3  # silence after which the list is complete
-MOST_ROBOTS = 250  # most robots in a list
+MAX_ROBOTS = 250  # most robots in a list
 MESSAGE_BYTES = 4096  # bytes of the longest message accepted; a robot sends less
 SKIPPED_BYTES = 1 << 20  # bytes of the longest message skipped; a longer one ends the connection
-MOST_SKIPPED, TOPIC_CHARACTERS = 20, 80  # topics that are named, and of one
+MAX_SKIPPED, TOPIC_CHARACTERS = 20, 80  # topics that are named, and of one
 _PUBLISH, _PINGRESP = 0x30, 0xD0  # kinds of packets
 PIECE_BYTES = 400  # bytes of a message's piece; a robot accepts 512
 DRIVER_S = 0.5  # silence of the driver after which its run is not kept alive
@@ -155,7 +155,7 @@ class _Client(mqtt.Client):
 
     def _skip(self, head: bytes, size: int) -> None:
         topic = head[2 : 2 + int.from_bytes(head[:2], "big")].decode("utf-8", "replace")
-        if len(self.skipped_bytes) < MOST_SKIPPED:
+        if len(self.skipped_bytes) < MAX_SKIPPED:
             self.skipped_bytes[topic[:TOPIC_CHARACTERS]] = size
 
 
@@ -329,7 +329,7 @@ class Broker:
         if presences is None or not is_robot or not 1 <= len(payload) <= 1 + NAME_BYTES:
             return
         if payload[:1] not in (b"+", b"-") or (
-            len(presences) == MOST_ROBOTS and robot_id not in presences
+            len(presences) == MAX_ROBOTS and robot_id not in presences
         ):
             return
         name = payload[1:].decode("utf-8", "replace")

@@ -22,8 +22,8 @@ SEARCH_S = 5.0  # time to search for one robot
 LIST_S = 2.0  # time to list all robots
 ROBOT_MS = 1000  # time for each address that did not arrive with its name
 ADDRESSES_S = 3.0  # time for all addresses
-MOST_NAME_BYTES = 63  # bytes of a name
-MOST_ROBOTS = 1000  # most robots in a list
+MAX_NAME_BYTES = 63  # bytes of a name
+MAX_ROBOTS = 1000  # most robots in a list
 
 
 class AnnouncedRobot(NamedTuple):
@@ -36,7 +36,7 @@ class AnnouncedRobot(NamedTuple):
 def resolve(port: str) -> str:
     """Return the address, `socket://…`, of the robot that announces a name. Raises PortError."""
     name = name_in(port).removesuffix(".local")
-    if not 0 < len(name.encode()) <= MOST_NAME_BYTES:
+    if not 0 < len(name.encode()) <= MAX_NAME_BYTES:
         raise PortError(errors.NOT_ANNOUNCED)
     with _network() as network:
         info = query_service(network, f"{name}.{SERVICE}", int(SEARCH_S * 1000))
@@ -57,7 +57,7 @@ def list_robots() -> list[AnnouncedRobot]:
 
     class Listener:
         def add_service(self, _: Zeroconf, __: str, name: str) -> None:
-            if len(names) < MOST_ROBOTS:
+            if len(names) < MAX_ROBOTS:
                 names.add(name)
 
         def update_service(self, *_: object) -> None:

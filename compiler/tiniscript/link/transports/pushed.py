@@ -10,7 +10,7 @@ from threading import Lock
 from tiniscript.base.bell import Bell
 from tiniscript.link.transports import READ_S
 
-MOST_BUFFERED_BYTES = 65_536  # most bytes that wait to be read; more are dropped
+MAX_BUFFERED_BYTES = 65_536  # most bytes that wait to be read; more are dropped
 END_REASON = "the connection has ended"
 
 
@@ -51,7 +51,7 @@ class PushedTransport:
     def add_received(self, data: bytes | bytearray) -> None:
         """Add received bytes."""
         with self._lock:
-            self._buffer += data[: MOST_BUFFERED_BYTES - len(self._buffer)]
+            self._buffer += data[: MAX_BUFFERED_BYTES - len(self._buffer)]
             self._bell.ring()
 
     def end(self, reason: str) -> None:

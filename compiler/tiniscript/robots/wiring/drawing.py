@@ -39,7 +39,7 @@ LEGEND_STEP = 24
 FONT = "'DejaVu Sans', Verdana, Arial, sans-serif"
 # The distance between a part's edge and the things in the zone next to it.
 TAG_DISTANCE, NEAR_DISTANCE, DOT_DISTANCE, FAR_DISTANCE = 26, 65, 94, 118
-LEAST_SCALE = 0.65  # a text is made smaller to this part of its size, and then cut
+MIN_SCALE = 0.65  # a text is made smaller to this part of its size, and then cut
 NARROW_LETTERS = frozenset("iljtfrI1.,:;'|()[] ")
 WIDE_CLASSES = frozenset("WFA")
 
@@ -101,7 +101,7 @@ def text_at(
 ) -> str:  # fmt: skip
     """Return a text that takes at most `room`: smaller where it must be, and cut at the least."""
     label = "".join(letter for letter in label if letter.isprintable())
-    while _width(label, size) * LEAST_SCALE > room:
+    while _width(label, size) * MIN_SCALE > room:
         label = label.rstrip("…")[:-1] + "…"
     size = min(size, size * room / (_width(label, size) or 1))
     size_attribute = f' font-size="{size:.3g}"' if size != 14 else ""

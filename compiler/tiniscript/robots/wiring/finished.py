@@ -29,7 +29,7 @@ WHEEL_CM = 6.5, 2.6  # diameter and width of a wheel
 LABEL_STEP = 44  # between two labels
 ARROW_LENGTH = 30
 JAW_LENGTH = 46  # reach of a servo's arm
-MOST_JAW_OFFSET_CM = 3  # greatest distance between the jaws' middle line and a jaw
+MAX_JAW_OFFSET_CM = 3  # greatest distance between the jaws' middle line and a jaw
 PLATE_FILL, PART_FILL = "#f4f4f4", "#ffffff"
 THIN_LINE = "#888888", 1  # the line from a label
 DASHED_STYLE = ' stroke-dasharray="5 4"'  # style of parts under the plate
@@ -161,7 +161,7 @@ class _FinishedDrawing:
             if (
                 place.sees == "touch"
                 and place.x_cm > front_cm
-                and abs(place.y_cm) < MOST_JAW_OFFSET_CM
+                and abs(place.y_cm) < MAX_JAW_OFFSET_CM
             ):
                 return place
         return None

@@ -33,7 +33,7 @@ _CHANGING_OPS = frozenset(("SENSOR", "TIME", "RANDOM"))
 # Comparisons that hold and that become true, by direction of the move.
 _REVERSED_COMPARATORS = {"F": {"GT": "LT", "GE": "LE"}, "B": {"LT": "GT", "LE": "GE"}}
 _SIDE_BY_COMPARATOR = {"LT": "below", "LE": "below", "GT": "above", "GE": "above"}
-_MOST_ARMS = 50  # most arms of an IF whose conditions are compared
+_MAX_ARMS = 50  # most arms of an IF whose conditions are compared
 _COMPARATOR_REACHED = {
     "F": "LE",
     "B": "GE",
@@ -308,7 +308,7 @@ class _Conditions:
         widest_comparisons: dict[
             tuple[str, str], Comparison
         ] = {}  # keyed by sensor and direction of the comparison
-        for k, arm in enumerate(statement.arms[:_MOST_ARMS]):
+        for k, arm in enumerate(statement.arms[:_MAX_ARMS]):
             comparison = self._comparison(arm.condition)
             if comparison is None or comparison.op not in _SIDE_BY_COMPARATOR:
                 continue

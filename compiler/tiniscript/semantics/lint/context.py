@@ -14,7 +14,7 @@ from tiniscript.syntax.lexer import Scan
 
 # Statements that leave the robot where it is.
 STANDING_STATEMENTS = (ir.Read, ir.Assign, ir.Show, ir.Act)
-MOST_CHARACTERS = 120  # characters of a condition that a message can hold
+MAX_CHARACTERS = 120  # characters of a condition that a message can hold
 
 
 class BodyContext(NamedTuple):
@@ -74,7 +74,7 @@ class LintContext:
             return ""
         start = offsets[-1] if word == "UNTIL" else offsets[0]
         depth = 1
-        for k in range(start, min(len(text), start + MOST_CHARACTERS)):
+        for k in range(start, min(len(text), start + MAX_CHARACTERS)):
             depth += (text[k] == "(") - (text[k] == ")")
             if not depth:
                 condition = text[start:k].strip()

@@ -18,7 +18,7 @@ from tiniscript.semantics.lint.context import LintContext
 from tiniscript.semantics.optimizer import known_value
 
 _WHEN_HEADER = r"(?i)WHEN[ \t]*(\(.*\))[ \t]*(?=$|[;\r\n]|//)"
-_MOST_INSTRUCTIONS = 6  # instructions that a suggestion shows
+_MAX_INSTRUCTIONS = 6  # instructions that a suggestion shows
 _INSTANT_STATEMENTS = (ir.Read, ir.Assign, ir.Show, ir.Set, ir.Stop, ir.Call, ir.Act)
 
 
@@ -57,7 +57,7 @@ def _report_taken_turns(tasks: list[ir.Body], context: LintContext) -> None:
     values = {"first": first_text, "both": "M(60, 30);W(4)"}
     spans = sorted(statement.span for body in (*tasks, context.program.body) for statement in body)
     instructions = [context.source[span] for span in spans]
-    if len(instructions) <= _MOST_INSTRUCTIONS and not any(
+    if len(instructions) <= _MAX_INSTRUCTIONS and not any(
         "\n" in instruction for instruction in instructions
     ):
         values["after"] = ";".join(instructions)

@@ -22,7 +22,7 @@ from tiniscript.syntax.lexer import NEWLINE, Token
 
 _SEEN_STATEMENTS = (ir.Move, ir.Act, ir.Motors)  # statements with a visible or audible effect
 _NOTE_BEHIND = r"[ \t;]{0,99}//"
-MOST_EXAMPLE_INSTRUCTIONS = 12  # instructions that an example has
+MAX_EXAMPLE_INSTRUCTIONS = 12  # instructions that an example has
 _CALL = (
     r"(?:[FBLR]\(\s*(?:-?[0-9.]+(?:\s*(?:CM|DEG))?|FOREVER)\s*,\s*-?[0-9.]+\s*\)"
     r"|(?:M|BEEP)\(\s*-?[0-9.]+\s*,\s*-?[0-9.]+\s*\)|W\(\s*(?:[0-9.]+|FOREVER)\s*\))"
@@ -33,7 +33,7 @@ _CALLS = rf"(?i)/+\s*(?:{_CALL})(?:[;\s]*(?:{_CALL}|STOP|S))*[;\s]*"
 _CALL_IN_IT = rf"(?i)(?:{_CALL})|STOP|S"
 # Tokens allowed between such calls.
 _HEADER_OR_END = r"(?i)(?:LOOP|IF|ELSEIF|WHILE|WHEN|SHOW)\s*\([^();]+\)|ELSE|TASK|END_?[A-Z]+"
-MOST_NOTE_CHARACTERS = 200  # characters of a note that is looked at
+MAX_NOTE_CHARACTERS = 200  # characters of a note that is looked at
 
 
 # -- what is never done ----------------------------------------------------------------------
@@ -67,7 +67,7 @@ def report_instructions_in_notes(context: LintContext) -> None:
     """
     source, tokens = context.source, context.scan.tokens
     short_comments = [
-        comment for comment in context.scan.comments if len(comment.text) <= MOST_NOTE_CHARACTERS
+        comment for comment in context.scan.comments if len(comment.text) <= MAX_NOTE_CHARACTERS
     ]
     if all(token.kind in INSTRUCTION_ENDS for token in tokens):
         _report_all_notes(short_comments, context)
@@ -192,7 +192,7 @@ def report_empty_blocks(body: ir.Body, body_context: BodyContext, context: LintC
             ("example", instructions_after),
             ("before", instructions_before),
         ):
-            if 0 < len(instructions) <= MOST_EXAMPLE_INSTRUCTIONS:
+            if 0 < len(instructions) <= MAX_EXAMPLE_INSTRUCTIONS:
                 values[name] = "; ".join((header, *instructions, end))
         context.report(codes.EMPTY_BLOCK, span, **values)
 

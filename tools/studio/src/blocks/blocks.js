@@ -33,15 +33,15 @@ import { text, textsOf } from '../page/texts.js';
 
 const NARROW_PX = 700; // pixels of width, below which questions are folded
 const START_SCALE = 0.75; // at which letters are 12 pixels high, and what is pressed is 24
-const MOST_TIP_CHARACTERS = 36; // so many characters are in a line of a message at a block,
-const MOST_NARROW_TIP_CHARACTERS = 28; // and so many on a phone
+const MAX_TIP_CHARACTERS = 36; // so many characters are in a line of a message at a block,
+const MAX_NARROW_TIP_CHARACTERS = 28; // and so many on a phone
 const SNAP_RADIUS = 48; // units of a workspace: how far off a block may be dropped
 const STAY_RADIUS = 68; // the same while it is shown where it would go
 const NOTCH_HEIGHT = 8; // of a block, in the one below it
 const BUBBLE_GAP_BESIDE = 24; // units between a block and its message
 const BUBBLE_GAP_BELOW = 12; // the same, where it stands below
-const LEAST_HEIGHT_PX = 240; // pixels of height: in less, a message is seen when somebody asks
-const MOST_KNOWN_STACKS = 200; // stacks whose places are known
+const MIN_HEIGHT_PX = 240; // pixels of height: in less, a message is seen when somebody asks
+const MAX_KNOWN_STACKS = 200; // stacks whose places are known
 
 export class Blocks {
   #container;
@@ -484,7 +484,7 @@ export class Blocks {
   /** What is not joined to the program looks it, and is found where it is now. */
   #markLoose() {
     this.#setMarked('loose', this.#workspace.getTopBlocks(false).filter(isLoose).map(({ id }) => id));
-    if (this.#stackPlaces.size > MOST_KNOWN_STACKS) this.#stackPlaces.clear();
+    if (this.#stackPlaces.size > MAX_KNOWN_STACKS) this.#stackPlaces.clear();
     keepPlaces(this.#workspace, this.#stackPlaces);
   }
 
@@ -555,7 +555,7 @@ export class Blocks {
   /** Shows the message of a block, where there is room. @param {string} id */
   async #openMessage(id) {
     const badge = this.#badgeOf(id);
-    if (!badge || badge === this.#openingBadge || this.#container.clientHeight < LEAST_HEIGHT_PX) return;
+    if (!badge || badge === this.#openingBadge || this.#container.clientHeight < MIN_HEIGHT_PX) return;
     this.#openingBadge = badge; // asked twice, Blockly would show it twice
     await badge.setBubbleVisible(true);
     this.#openingBadge = null;
@@ -668,7 +668,7 @@ function keepSmallStacksVisible(workspace) {
 
 /** Fills each line: Blockly makes all about equal, and as long as it likes. @param {string} message */
 function wrapLines(message) {
-  const mostCharacters = innerWidth < NARROW_PX ? MOST_NARROW_TIP_CHARACTERS : MOST_TIP_CHARACTERS;
+  const mostCharacters = innerWidth < NARROW_PX ? MAX_NARROW_TIP_CHARACTERS : MAX_TIP_CHARACTERS;
   return message.replace(new RegExp(`(.{1,${mostCharacters}})(?:[ \\n]+|$)`, 'g'), '$1\n').trimEnd();
 }
 

@@ -10,8 +10,8 @@ import { ROBOTS } from '../page/words.js';
 
 const PAUSE_MS = 80; // between two pictures
 const OWNER_INTERVAL_MS = 1000; // between two of one pupil
-const MOST_BLOCKS = 150; // blocks
-const MOST_PIXELS = 1_200_000;
+const MAX_BLOCKS = 150; // blocks
+const MAX_PIXELS = 1_200_000;
 const NO_PICTURE = ''; // of a program that is empty
 
 export class Pictures {
@@ -76,7 +76,7 @@ export class Pictures {
   async #drawPicture({ text, robot: robotName }) {
     if (!text.trim()) return NO_PICTURE;
     await this.#python.ready;
-    const form = await this.#python.ask({ do: 'blocks', robot: robotName, first: MOST_BLOCKS }, new TextEncoder().encode(text));
+    const form = await this.#python.ask({ do: 'blocks', robot: robotName, first: MAX_BLOCKS }, new TextEncoder().encode(text));
     this.#blocks ??= import('./blocks.js').then(({ Blocks }) => new Blocks(this.#container, ROBOTS[0]?.name ?? '', 'few'));
     const blocks = await this.#blocks.catch((error) => {
       this.#blocks = null; // the next picture tries again
@@ -84,7 +84,7 @@ export class Pictures {
     });
     if (this.#isLanguageOld) blocks.updateLanguage();
     this.#isLanguageOld = false;
-    const file = await blocks.makeFormPicture(form, robotName, MOST_PIXELS);
+    const file = await blocks.makeFormPicture(form, robotName, MAX_PIXELS);
     return file ? URL.createObjectURL(file) : NO_PICTURE;
   }
 

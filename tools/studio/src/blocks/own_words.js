@@ -2,7 +2,7 @@
 
 import * as Blockly from 'blockly/core';
 import { NameField } from './fields.js';
-import { FREE_LETTERS, MOST_PARAMETERS, tipOf } from '../page/words.js';
+import { FREE_LETTERS, MAX_PARAMETERS, tipOf } from '../page/words.js';
 
 const BUTTON_UNITS = 32; // units of a button on a block
 
@@ -47,7 +47,7 @@ export const DEF_METHODS = {
   /** @this {any} */
   addValue() {
     const names = this.names();
-    if (names.length >= MOST_PARAMETERS) return;
+    if (names.length >= MAX_PARAMETERS) return;
     const takenNames = new Set([...names, ...this.workspace.getAllBlocks(false).map((/** @type {any} */ block) => block.getFieldValue('WORD'))]);
     const name = FREE_LETTERS.find((letter) => !takenNames.has(letter)) ?? `A_${names.length + 1}`;
     changeState(this, () => this.setNames([...names, name]));

@@ -5,8 +5,8 @@ import { runInSlices } from './slices.js';
 
 const MARGIN = 16;
 const PIXEL_RATIO = 2; // pixels of the picture for one of the screen at its usual size
-const MOST_SIDE_PX = 8000; // pixels
-const MOST_PIXELS = 24_000_000;
+const MAX_SIDE_PX = 8000; // pixels
+const MAX_PIXELS = 24_000_000;
 const OMITTED_SELECTOR = '.blocklyIconGroup, .blocklyPathSelected, .blocklyInsertionMarker';
 const ARROW_PATH = 'M1 4 6 9 11 4z'; // of a field that offers a list; its own is a file, in white
 const PLAIN_STYLE = { fill: 'none', fillOpacity: '1', stroke: 'none', strokeOpacity: '1', strokeWidth: '0' };
@@ -23,10 +23,10 @@ const ALIGNMENTS = { start: 'left', middle: 'center', end: 'right' };
  * @param {number} [mostPixels] pixels
  * @returns {Promise<Blob | null>}
  */
-export async function renderPicture(canvas, { left, right, top, bottom }, mostPixels = MOST_PIXELS) {
+export async function renderPicture(canvas, { left, right, top, bottom }, mostPixels = MAX_PIXELS) {
   const width = right - left + 2 * MARGIN, height = bottom - top + 2 * MARGIN;
   if (!(right > left && bottom > top)) return null;
-  const scale = Math.min(PIXEL_RATIO, MOST_SIDE_PX / width, MOST_SIDE_PX / height, Math.sqrt(mostPixels / (width * height)));
+  const scale = Math.min(PIXEL_RATIO, MAX_SIDE_PX / width, MAX_SIDE_PX / height, Math.sqrt(mostPixels / (width * height)));
   const outputCanvas = document.createElement('canvas');
   Object.assign(outputCanvas, { width: Math.ceil(width * scale), height: Math.ceil(height * scale) });
   const pen = outputCanvas.getContext('2d');

@@ -216,7 +216,7 @@ function makeTruthShadow() {
   return { type: 'truth', fields: { WORD: 'TRUE' } };
 }
 
-const MOST_ARMS = 20;
+const MAX_ARMS = 20;
 const BUTTON_UNITS = 32; // units of a button on a block: 24 pixels at the least scale
 
 /** The block of IF: as many arms as its state says. */
@@ -263,7 +263,7 @@ const IF = {
 
   /** @this {any} */
   addArm() {
-    this.changeArms(this.hasElse ? Math.min(this.arms + 1, MOST_ARMS) : this.arms, true);
+    this.changeArms(this.hasElse ? Math.min(this.arms + 1, MAX_ARMS) : this.arms, true);
   },
 
   /** @this {any} */

@@ -5,7 +5,7 @@
 import * as Blockly from 'blockly/core';
 import { BLOCK_SELECTOR, isTouched } from '../page/pointer.js';
 
-const LEAST_SCALE = 0.4; // how small the blocks become at most
+const MIN_SCALE = 0.4; // how small the blocks become at most
 const EDGE_UNITS = 12; // units around what is seen
 const ROW_UNITS = 48; // units: so much of a block says what it is, however much is in it,
 const WORD_UNITS = 160; // and so much of a row, where there is no room for all of it
@@ -58,14 +58,14 @@ export class RunFollower {
     if (!boxes.length || viewport.getWidth() <= 0 || boxes.every((box) => isInside(box, viewport))) return;
     const { scale, scrollX: x, scrollY: y } = this.#workspace;
     const headBoxes = boxes.map(({ top, bottom, left, right }) => new Blockly.utils.Rect(top, bottom, left, Math.min(right, left + WORD_UNITS)));
-    const boundingBox = this.#fittingScaleOf(boundsOf(boxes)) < LEAST_SCALE ? boundsOf(headBoxes) : boundsOf(boxes);
+    const boundingBox = this.#fittingScaleOf(boundsOf(boxes)) < MIN_SCALE ? boundsOf(headBoxes) : boundsOf(boxes);
     const fittingScale = this.#fittingScaleOf(boundingBox);
-    const isTooFar = fittingScale < LEAST_SCALE;
-    if (headBoxes.every((box) => isInside(box, viewport)) && scale <= LEAST_SCALE) return;
+    const isTooFar = fittingScale < MIN_SCALE;
+    if (headBoxes.every((box) => isInside(box, viewport)) && scale <= MIN_SCALE) return;
     if (isTooFar && (headBoxes.some((box) => isInside(box, viewport)) || performance.now() - this.#lastScroll_ms < SCROLL_INTERVAL_MS)) return;
     this.#viewBefore ??= { scale, x, y };
     this.#lastScroll_ms = performance.now();
-    if (fittingScale < scale) this.#workspace.setScale(Math.max(LEAST_SCALE, fittingScale));
+    if (fittingScale < scale) this.#workspace.setScale(Math.max(MIN_SCALE, fittingScale));
     this.#scrollTo(isTooFar ? headBoxes[0] ?? boundingBox : boundingBox);
   }
 
@@ -106,7 +106,7 @@ export class RunFollower {
     const viewport = this.#viewport;
     if (!this.#viewWithRoom || !boxes.length || viewport.getWidth() <= 0 || boxes.every((box) => isInside(box, viewport))) return;
     const visibleBox = boundsOf(boxes);
-    this.#workspace.setScale(Math.max(LEAST_SCALE, Math.min(this.#viewWithRoom.scale, this.#fittingScaleOf(visibleBox))));
+    this.#workspace.setScale(Math.max(MIN_SCALE, Math.min(this.#viewWithRoom.scale, this.#fittingScaleOf(visibleBox))));
     this.#scrollTo(visibleBox);
   }
 

@@ -13,7 +13,7 @@ import { KINDS, blockLabel, pieceOf, PLAIN_WORDS, plainKind, tipOf, wordsOnBlock
 
 export const LEVELS = /** @type {Level[]} */ (['few', 'usual', 'all']);
 
-const MOST_NAMES = 6; // of a program, in a group
+const MAX_NAMES = 6; // of a program, in a group
 const AHEAD_SENSOR = 'DISTANCE'; // of a robot that looks ahead
 const OFFERED_REMOTE_WORDS = ['KEY_A', 'PAD_Y']; // the field of each offers the others
 
@@ -125,11 +125,11 @@ function makeGroups(usedNames) {
     ]],
     ['names', [
       ['usual', makeItem('assign', [0], usedNames.names[0] ?? 'X')],
-      ...(usedNames.names.length ? usedNames.names.slice(0, MOST_NAMES) : ['X']).map((name) => /** @type {[Level, ToolboxItem]} */ (['usual', makeItem('name', [], name)])),
+      ...(usedNames.names.length ? usedNames.names.slice(0, MAX_NAMES) : ['X']).map((name) => /** @type {[Level, ToolboxItem]} */ (['usual', makeItem('name', [], name)])),
     ]],
     ['words', [
       ['usual', makeItem('def', [], freeWord(usedNames))],
-      ...usedNames.words.slice(0, MOST_NAMES).map(([name, count]) => /** @type {[Level, ToolboxItem]} */ (['usual', makeCallItem(name, count)])),
+      ...usedNames.words.slice(0, MAX_NAMES).map(([name, count]) => /** @type {[Level, ToolboxItem]} */ (['usual', makeCallItem(name, count)])),
     ]],
     ['others', [['usual', makeItem('comment')], ['all', makeItem('start')]]],
   ];
@@ -140,7 +140,7 @@ function wordOfItem(item) {
   return /** @type {{WORD?: string}} */ (item.fields ?? {}).WORD ?? '';
 }
 
-const MOST_RESULTS = 8; // are seen at once
+const MAX_RESULTS = 8; // are seen at once
 
 /** @param {string} text @returns {string} in small letters without accents */
 function withoutAccents(text) {
@@ -168,7 +168,7 @@ export function findItems(query, usedNames) {
     ].indexOf(true));
     return { item, rank: Math.max(...ranks) };
   }));
-  return rankedItems.filter(({ rank }) => rank < RANK_COUNT).sort((a, b) => a.rank - b.rank).slice(0, MOST_RESULTS).map(({ item }) => ({ ...item, gap: 8 }));
+  return rankedItems.filter(({ rank }) => rank < RANK_COUNT).sort((a, b) => a.rank - b.rank).slice(0, MAX_RESULTS).map(({ item }) => ({ ...item, gap: 8 }));
 }
 
 /** What people say for a block and for the words that it stands for, by the lexicon of their language. @param {ToolboxItem} item @returns {string} */

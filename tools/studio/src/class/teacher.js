@@ -32,7 +32,7 @@ import { isSecondPress } from '../page/twice.js';
 const POLL_MS = 1000;
 const GROUP_PREFIX = 'group '; // before the class's key of a group
 const CONFIRM_MS = 5000;
-const MOST_NAMED_HANDS = 4; // hands that are named above the wall
+const MAX_NAMED_HANDS = 4; // hands that are named above the wall
 
 export class Teacher {
   #wall = new Wall({
@@ -323,7 +323,7 @@ export class Teacher {
       return;
     }
     const raisedHands = pupils.filter(({ hand }) => hand).sort((first, second) => first.hand - second.hand);
-    const handNames = raisedHands.slice(0, MOST_NAMED_HANDS).map(({ name }) => asPlainText(name)).join(', ') + (raisedHands.length > MOST_NAMED_HANDS ? ` +${raisedHands.length - MOST_NAMED_HANDS}` : '');
+    const handNames = raisedHands.slice(0, MAX_NAMED_HANDS).map(({ name }) => asPlainText(name)).join(', ') + (raisedHands.length > MAX_NAMED_HANDS ? ` +${raisedHands.length - MAX_NAMED_HANDS}` : '');
     const count = text('class_count', { pupils: pupils.length, robots: robots.length, waiting: pupils.filter(({ place: queuePlace }) => queuePlace).length });
     setText(this.#statusElement, [count, raisedHands.length ? text('class_hands', { names: handNames }) : '', handout ? text(handout.lesson ? 'class_opened_lesson' : 'class_opened_program', { number: handout.lesson, opened: handout.opened, pupils: pupils.length }) : '', this.#notice || (goes_on ? text('class_goes_on') : '')].filter(Boolean).join(' '));
     document.documentElement.dataset['teacher'] = 'class_count';

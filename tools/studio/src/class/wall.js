@@ -23,9 +23,9 @@ import { text } from '../page/texts.js';
 
 const SILENT_S = 5;
 const PICTURE_ASPECT_RATIO = 1.75; // of a tile's picture: what suits most programs
-const LEAST_WIDTH_PX = 132; // pixels of width, below which the wall is scrolled
-const LEAST_HEIGHT_PX = 84; // and of height
-const MOST_HEIGHT_PX = 260;
+const MIN_WIDTH_PX = 132; // pixels of width, below which the wall is scrolled
+const MIN_HEIGHT_PX = 84; // and of height
+const MAX_HEIGHT_PX = 260;
 const GAP_PX = 6;
 
 /** What a pupil does with which robot; nothing for one without a robot. @param {import('./teacher.js').PupilRow | null} pupil */
@@ -147,15 +147,15 @@ export class Wall {
     const count = this.#tiles.size;
     if (!count || !width || !height) return;
     let bestLayout = { columns: 1, size: 0 };
-    for (let columns = 1; columns <= count && (width + GAP_PX) / columns - GAP_PX >= LEAST_WIDTH_PX; columns += 1) {
+    for (let columns = 1; columns <= count && (width + GAP_PX) / columns - GAP_PX >= MIN_WIDTH_PX; columns += 1) {
       const width_px = (width + GAP_PX) / columns - GAP_PX;
-      const height_px = Math.min(MOST_HEIGHT_PX, (height + GAP_PX) / Math.ceil(count / columns) - GAP_PX);
+      const height_px = Math.min(MAX_HEIGHT_PX, (height + GAP_PX) / Math.ceil(count / columns) - GAP_PX);
       const pictureSize = Math.min(width_px / PICTURE_ASPECT_RATIO, height_px);
       if (pictureSize > bestLayout.size) bestLayout = { columns, size: pictureSize };
     }
-    if (bestLayout.size < LEAST_HEIGHT_PX) bestLayout.columns = Math.max(1, Math.floor((width + GAP_PX) / (LEAST_WIDTH_PX + 30 + GAP_PX)));
+    if (bestLayout.size < MIN_HEIGHT_PX) bestLayout.columns = Math.max(1, Math.floor((width + GAP_PX) / (MIN_WIDTH_PX + 30 + GAP_PX)));
     const rows = Math.ceil(count / bestLayout.columns);
-    const tileHeight = Math.max(LEAST_HEIGHT_PX, Math.min(MOST_HEIGHT_PX, Math.floor((height + GAP_PX) / rows - GAP_PX)));
+    const tileHeight = Math.max(MIN_HEIGHT_PX, Math.min(MAX_HEIGHT_PX, Math.floor((height + GAP_PX) / rows - GAP_PX)));
     this.element.style.setProperty('--columns', String(bestLayout.columns));
     this.element.style.setProperty('--high', `${tileHeight}px`);
   }

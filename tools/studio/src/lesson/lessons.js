@@ -51,8 +51,8 @@ const VERDICT_KEYS = /** @type {const} */ ({
 });
 const ARCHIVE_NAME = 'lessons.zip'; // named where it cannot be fetched
 const PART_MS = 40; // of the worker's time for a part of a check
-const LEAST_ROBOT_MS = 20; // of the robot's time in a part, and the most
-const MOST_ROBOT_MS = 2000;
+const MIN_ROBOT_MS = 20; // of the robot's time in a part, and the most
+const MAX_ROBOT_MS = 2000;
 
 const SCROLL_TOLERANCE_PX = 4; // pixels below that nobody misses
 
@@ -448,7 +448,7 @@ export class Lessons {
     this.#showButtons();
     this.#endButton.focus();
     this.#verdictElement.textContent = text('lesson_checking', { seed: 1, worlds });
-    let most_ms = LEAST_ROBOT_MS;
+    let most_ms = MIN_ROBOT_MS;
     try {
       await this.#page.python.ask({ do: 'lesson_check', number: lessonNumber, language: currentLanguage() }, programBytes);
       while (checkNumber === this.#checkCount) {
@@ -463,7 +463,7 @@ export class Lessons {
         }
         this.#verdictElement.textContent = text('lesson_checking', { seed: answer.seed, worlds });
         const factor = PART_MS / Math.max(1, performance.now() - began_ms);
-        most_ms = Math.round(Math.min(MOST_ROBOT_MS, Math.max(LEAST_ROBOT_MS, most_ms * Math.min(4, factor))));
+        most_ms = Math.round(Math.min(MAX_ROBOT_MS, Math.max(MIN_ROBOT_MS, most_ms * Math.min(4, factor))));
       }
     } catch (error) {
       if (checkNumber !== this.#checkCount) return;

@@ -10,14 +10,14 @@ const STORAGE_KEY = 'tiniscript.lessons';
 const STARS_KEY = 'tiniscript.stars';
 const PROGRAMS_KEY = 'tiniscript.lesson_programs';
 const PLACE_KEY = 'tiniscript.lesson_place';
-const MOST_LESSONS = 100;
-const MOST_STARS = 100; // of a lesson
-const MOST_CHARACTERS = 20_000; // of a lesson's program
+const MAX_LESSONS = 100;
+const MAX_STARS = 100; // of a lesson
+const MAX_CHARACTERS = 20_000; // of a lesson's program
 
 /** @returns {Set<string>} names of lessons */
 export function loadDoneLessons() {
   const stored = loadJson(STORAGE_KEY);
-  return new Set(Array.isArray(stored) ? stored.filter((name) => typeof name === 'string' && /^\w{1,60}$/.test(name)).slice(0, MOST_LESSONS) : []);
+  return new Set(Array.isArray(stored) ? stored.filter((name) => typeof name === 'string' && /^\w{1,60}$/.test(name)).slice(0, MAX_LESSONS) : []);
 }
 
 /** Keeps that a lesson is done; returns whether that was possible. @param {string} name */
@@ -28,8 +28,8 @@ export function storeDoneLesson(name) {
 /** @returns {Map<string, number>} the most stars that each lesson has brought; one that is done has one at least */
 export function loadStars() {
   const stored = loadJson(STARS_KEY);
-  const rows = Object.entries(stored && typeof stored === 'object' && !Array.isArray(stored) ? stored : {}).slice(0, MOST_LESSONS);
-  const stars = new Map(rows.filter(([name, count]) => /^\w{1,60}$/.test(name) && Number.isInteger(count) && count > 0 && count <= MOST_STARS));
+  const rows = Object.entries(stored && typeof stored === 'object' && !Array.isArray(stored) ? stored : {}).slice(0, MAX_LESSONS);
+  const stars = new Map(rows.filter(([name, count]) => /^\w{1,60}$/.test(name) && Number.isInteger(count) && count > 0 && count <= MAX_STARS));
   for (const name of loadDoneLessons()) stars.set(name, stars.get(name) ?? 1);
   return stars;
 }
@@ -47,12 +47,12 @@ export function starsKeyOfWorld(name) {
 }
 
 /** The most stars that each lesson and each world of this page brings, as they are kept. @type {Map<string, number>} */
-const MOST_STARS_BY_NAME = new Map([...Object.entries(STARS.lessons), ...Object.entries(STARS.worlds).map(([name, most]) => /** @type {[string, number]} */ ([starsKeyOfWorld(name), most]))]);
+const MAX_STARS_BY_NAME = new Map([...Object.entries(STARS.lessons), ...Object.entries(STARS.worlds).map(([name, most]) => /** @type {[string, number]} */ ([starsKeyOfWorld(name), most]))]);
 
 /** All stars of all lessons and worlds of this page: what is kept may be of another one. */
 export function countAllStars() {
   const stars = loadStars();
-  return [...MOST_STARS_BY_NAME].reduce((sum, [name, most]) => sum + Math.min(most, stars.get(name) ?? 0), 0);
+  return [...MAX_STARS_BY_NAME].reduce((sum, [name, most]) => sum + Math.min(most, stars.get(name) ?? 0), 0);
 }
 
 /** What there is to be done, and what of it is done. @returns {{done: number, lessons: number, stars: number, most: number}} */
@@ -62,7 +62,7 @@ export function loadProgress() {
     done: lessonNames.filter((name) => doneLessons.has(name)).length,
     lessons: lessonNames.length,
     stars: countAllStars(),
-    most: [...MOST_STARS_BY_NAME.values()].reduce((sum, most) => sum + most),
+    most: [...MAX_STARS_BY_NAME.values()].reduce((sum, most) => sum + most),
   };
 }
 
@@ -80,8 +80,8 @@ export function storePlace(place) {
 /** @returns {Map<string, string>} the newest program of each lesson for which there was one */
 function loadPrograms() {
   const stored = loadJson(PROGRAMS_KEY);
-  const rows = Object.entries(stored && typeof stored === 'object' && !Array.isArray(stored) ? stored : {}).slice(0, MOST_LESSONS);
-  return new Map(rows.filter(([name, text]) => /^\w{1,60}$/.test(name) && typeof text === 'string' && text.trim() && text.length <= MOST_CHARACTERS));
+  const rows = Object.entries(stored && typeof stored === 'object' && !Array.isArray(stored) ? stored : {}).slice(0, MAX_LESSONS);
+  return new Map(rows.filter(([name, text]) => /^\w{1,60}$/.test(name) && typeof text === 'string' && text.trim() && text.length <= MAX_CHARACTERS));
 }
 
 /** @param {string} name of a lesson @returns {string} its newest program; empty for none */
@@ -97,5 +97,5 @@ export function forgetProgram(name) {
 
 /** Keeps the newest program of a lesson. @param {string} name @param {string} text */
 export function storeProgram(name, text) {
-  if (text.trim() && text.length <= MOST_CHARACTERS) storeText(PROGRAMS_KEY, JSON.stringify(Object.fromEntries(loadPrograms().set(name, text))));
+  if (text.trim() && text.length <= MAX_CHARACTERS) storeText(PROGRAMS_KEY, JSON.stringify(Object.fromEntries(loadPrograms().set(name, text))));
 }

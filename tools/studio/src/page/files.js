@@ -3,7 +3,7 @@
 import { element } from './elements.js';
 
 // One more than the compiler reads: it says that the file is too large.
-const MOST_BYTES = 1_000_001;
+const MAX_BYTES = 1_000_001;
 
 /** @param {string} id of the input @param {(file: File) => void} onFile with each file that a person chooses there */
 export function onFileChosen(id, onFile) {
@@ -20,7 +20,7 @@ export function onFileChosen(id, onFile) {
  * @returns {Promise<Uint8Array>}
  */
 export async function readBytes(file) {
-  return new Uint8Array(await file.slice(0, MOST_BYTES).arrayBuffer());
+  return new Uint8Array(await file.slice(0, MAX_BYTES).arrayBuffer());
 }
 
 /**

@@ -7,7 +7,7 @@ import { pageState } from './page_state.js';
 /** @typedef {{name: string, colour: number}} OwnRobot `colour` is a number of COLOURS */
 
 const STORAGE_KEY = 'tiniscript.own_robot';
-export const MOST_NAME_CHARACTERS = 16;
+export const MAX_NAME_CHARACTERS = 16;
 /** Of its body and of its edge, with the text of the name of each: white is seen on all, and all on every floor. No red: that is a robot with a fault. */
 export const COLOURS = /** @type {const} */ ([
   ['#2a9d6f', '#0d4f38', 'colour_green'], ['#2f74c0', '#123b63', 'colour_blue'], ['#8a4fc4', '#46217a', 'colour_purple'],
@@ -19,7 +19,7 @@ export const COLOURS = /** @type {const} */ ([
 export function validOwnRobot(value) {
   const { name, colour } = /** @type {Partial<Record<string, unknown>>} */ (value && typeof value === 'object' ? value : {});
   return {
-    name: typeof name === 'string' ? name.replace(/\p{C}/gu, '').trim().slice(0, MOST_NAME_CHARACTERS) : '',
+    name: typeof name === 'string' ? name.replace(/\p{C}/gu, '').trim().slice(0, MAX_NAME_CHARACTERS) : '',
     colour: Number.isInteger(colour) && Number(colour) >= 0 && Number(colour) < COLOURS.length ? Number(colour) : 0,
   };
 }

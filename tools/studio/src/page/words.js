@@ -9,7 +9,7 @@ import { labelOf, hasText, textKey, text } from './texts.js';
 /** @typedef {{text: string, role: string, example: string}} Word */
 
 export const ROBOTS = description.robots;
-export const MOST_PARAMETERS = description.most_parameters;
+export const MAX_PARAMETERS = description.most_parameters;
 
 /** Letters that are no words of the language. */
 export const FREE_LETTERS = [...'ABCDEFGHIJKLMNOPQRSTUVWXYZ'].filter((letter) => !description.words.some((word) => word.text === letter));

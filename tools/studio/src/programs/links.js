@@ -6,9 +6,9 @@
 import { isRobot } from '../page/words.js';
 
 const HASH_PREFIX = '#program=';
-const MOST_LINK_CHARACTERS = 8000; // characters of an address that any program for messages passes on
-const MOST_READ_CHARACTERS = 40_000;
-const MOST_BYTES = 200_000; // of what is inflated
+const MAX_LINK_CHARACTERS = 8000; // characters of an address that any program for messages passes on
+const MAX_READ_CHARACTERS = 40_000;
+const MAX_BYTES = 200_000; // of what is inflated
 
 /** @typedef {{text: string, robot: string}} SharedProgram */
 
@@ -25,7 +25,7 @@ export async function makeLink({ text, robot: robotName }, pageAddress) {
   for (const byte of bytes) letters += String.fromCharCode(byte);
   const packedText = btoa(letters).replaceAll('+', '-').replaceAll('/', '_').replaceAll('=', '');
   const link = pageAddress.replace(/#.*$/, '') + HASH_PREFIX + packedText;
-  return link.length <= MOST_LINK_CHARACTERS ? link : null;
+  return link.length <= MAX_LINK_CHARACTERS ? link : null;
 }
 
 /** Whether an address brings a program. @param {string} hash the part of the address from `#` on */
@@ -41,7 +41,7 @@ export function holdsProgram(hash) {
 export async function readLink(hash) {
   if (!holdsProgram(hash)) return null;
   const packedText = hash.slice(HASH_PREFIX.length);
-  if (packedText.length > MOST_READ_CHARACTERS || !/^[\w-]+$/.test(packedText)) throw new Error('not a program');
+  if (packedText.length > MAX_READ_CHARACTERS || !/^[\w-]+$/.test(packedText)) throw new Error('not a program');
   const letters = atob(packedText.replaceAll('-', '+').replaceAll('_', '/'));
   const bytes = Uint8Array.from(letters, (letter) => letter.charCodeAt(0));
   const program = JSON.parse(new TextDecoder('utf-8', { fatal: true }).decode(await inflate(bytes)));
@@ -61,7 +61,7 @@ async function inflate(bytes) {
     const { done, value } = await reader.read();
     if (done) break;
     length += value.length;
-    if (length > MOST_BYTES) {
+    if (length > MAX_BYTES) {
       await reader.cancel();
       throw new Error('too long');
     }

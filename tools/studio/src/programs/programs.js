@@ -14,7 +14,7 @@ import { isShippedProgram } from '../start/beginnings.js';
 import { showProgramInstead } from '../start/screens.js';
 import { pageState } from '../page/page_state.js';
 import { labelOf, currentLanguage, text } from '../page/texts.js';
-import { deleteVersion, loadVersions, MOST_CHARACTERS, restoreVersion, isSameProgramAs, storeVersion, versionTitle } from './versions.js';
+import { deleteVersion, loadVersions, MAX_CHARACTERS, restoreVersion, isSameProgramAs, storeVersion, versionTitle } from './versions.js';
 import { makeThumbnail } from '../start/thumbnail.js';
 import { robotOf } from '../page/words.js';
 import { storeWork } from './work.js';
@@ -33,7 +33,7 @@ import { messageWithFix } from '../writing/messages.js';
 
 const PUBLIC_ADDRESS_KEY = 'tiniscript.public'; // where others find this page, as somebody has told it
 const READER_CODES = 'TS3'; // of what a robot that reads text cannot do
-const MOST_CODE_BYTES = 900; // bytes: a camera reads no picture with more from a screen
+const MAX_CODE_BYTES = 900; // bytes: a camera reads no picture with more from a screen
 const QUIET_ZONE_MODULES = 4; // modules that must stay white around a code
 
 const LINK_HINT_KEYS = /** @type {const} */ ({ anywhere: 'share_link_anywhere', network: 'share_link_network', here: 'share_link_here' });
@@ -86,7 +86,7 @@ export class Programs {
   /** Keeps what is in the editor among the earlier programs, unless the page has brought it. Returns whether nothing of it would be lost. */
   storeVersion() {
     const isSafe = isShippedProgram(this.#page.work.text) || storeVersion(this.#page.work);
-    if (!isSafe) pageState.note.set(text(this.#page.work.text.length > MOST_CHARACTERS ? 'kept_too_long' : 'not_kept'));
+    if (!isSafe) pageState.note.set(text(this.#page.work.text.length > MAX_CHARACTERS ? 'kept_too_long' : 'not_kept'));
     return isSafe;
   }
 
@@ -182,7 +182,7 @@ export class Programs {
    */
   #showShared(result, hint, isForOthers = true) {
     const sharedText = 'text' in result ? result.text : '';
-    const fitsCode = sharedText !== '' && new TextEncoder().encode(sharedText).length <= MOST_CODE_BYTES;
+    const fitsCode = sharedText !== '' && new TextEncoder().encode(sharedText).length <= MAX_CODE_BYTES;
     this.#sharedTextArea.value = sharedText;
     this.#sharedTextArea.hidden = sharedText === '';
     this.#copyButton.hidden = sharedText === '' || !navigator.clipboard; // which plain http has not

@@ -14,8 +14,8 @@ import { storeText, loadJson } from '../page/kept.js';
 /** @typedef {{text: string, robot: string, name: string, at_ms: number}} Version */
 
 const STORAGE_KEY = 'tiniscript.versions';
-const MOST_VERSIONS = 40;
-export const MOST_CHARACTERS = 400_000; // in all; a browser keeps about five million
+const MAX_VERSIONS = 40;
+export const MAX_CHARACTERS = 400_000; // in all; a browser keeps about five million
 
 /** @returns {Version[]} */
 export function loadVersions() {
@@ -24,7 +24,7 @@ export function loadVersions() {
   /** @type {Map<string, Version>} */
   const versionByKey = new Map();
   for (const version of stored.filter(isVersion)) if (!versionByKey.has(keyOf(version))) versionByKey.set(keyOf(version), version);
-  return [...versionByKey.values()].slice(0, MOST_VERSIONS);
+  return [...versionByKey.values()].slice(0, MAX_VERSIONS);
 }
 
 /**
@@ -36,7 +36,7 @@ export function loadVersions() {
  */
 export function storeVersion({ text, robot: robotName, name }, at_ms = Date.now()) {
   if (!text.trim()) return true;
-  if (text.length > MOST_CHARACTERS) return false;
+  if (text.length > MAX_CHARACTERS) return false;
   const isSame = isSameProgramAs({ text, robot: robotName });
   const otherVersions = loadVersions().filter((version) => !isSame(version));
   return storeVersions([{ text, robot: robotName, name, at_ms }, ...otherVersions]);
@@ -63,8 +63,8 @@ export function restoreVersion(version) {
  * @returns {boolean} whether that one is kept
  */
 function storeVersions(versions, wantedVersion = versions[0]) {
-  const newVersions = versions.slice(0, MOST_VERSIONS);
-  while (newVersions.length > 1 && newVersions.reduce((sum, version) => sum + version.text.length, 0) > MOST_CHARACTERS) newVersions.pop();
+  const newVersions = versions.slice(0, MAX_VERSIONS);
+  while (newVersions.length > 1 && newVersions.reduce((sum, version) => sum + version.text.length, 0) > MAX_CHARACTERS) newVersions.pop();
   while (!storeText(STORAGE_KEY, JSON.stringify(newVersions))) {
     newVersions.pop();
     if (!newVersions.length) return false;
@@ -120,7 +120,7 @@ export function beginningOf(text) {
 function isVersion(value) {
   return (
     typeof value?.text === 'string' &&
-    value.text.length <= MOST_CHARACTERS &&
+    value.text.length <= MAX_CHARACTERS &&
     isRobot(value.robot) &&
     typeof value.name === 'string' &&
     Number.isFinite(value.at_ms) &&

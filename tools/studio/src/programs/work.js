@@ -14,9 +14,9 @@ const STORAGE_KEY = 'tiniscript.work';
 const WORLD_KEY = 'tiniscript.world'; // the text of the newest world that was drawn here
 const EARLIER_WORLDS_KEY = 'tiniscript.worlds_before'; // the texts of those before it
 export const OWN_WORLD = ':own'; // no name of a shipped world
-export const MOST_CHARACTERS = 1_000_000; // characters
+export const MAX_CHARACTERS = 1_000_000; // characters
 
-const MOST_OTHER_TEXTS = 5;
+const MAX_OTHER_TEXTS = 5;
 
 /** This tab's worlds that may be in storage; others there are another tab's. @type {Set<string>} */
 let tabWorldTexts = new Set();
@@ -46,7 +46,7 @@ function loadEarlierTexts(storeName) {
  * @returns {boolean}
  */
 export function storeWork(work) {
-  return work.text.length <= MOST_CHARACTERS && storeInBothStorages(STORAGE_KEY, JSON.stringify(work));
+  return work.text.length <= MAX_CHARACTERS && storeInBothStorages(STORAGE_KEY, JSON.stringify(work));
 }
 
 /**
@@ -59,8 +59,8 @@ export function storeWork(work) {
 export function storeWorldTexts(newestText, earlierTexts) {
   for (const worldText of [newestText, ...earlierTexts]) tabWorldTexts.add(worldText);
   // What lasts was put there by the tab that changed last, with the worlds of all tabs as it found them.
-  const otherTexts = [...new Set(loadLastingTexts())].filter((worldText) => !tabWorldTexts.has(worldText)).slice(0, MOST_OTHER_TEXTS);
-  let charactersLeft = MOST_CHARACTERS;
+  const otherTexts = [...new Set(loadLastingTexts())].filter((worldText) => !tabWorldTexts.has(worldText)).slice(0, MAX_OTHER_TEXTS);
+  let charactersLeft = MAX_CHARACTERS;
   const fittingTexts = [...earlierTexts, ...otherTexts].filter((worldText) => (charactersLeft -= worldText.length) >= 0);
   const ownEarlierTexts = fittingTexts.filter((worldText) => earlierTexts.includes(worldText));
   const areEarlierStored = storeInBothStorages(EARLIER_WORLDS_KEY, JSON.stringify(ownEarlierTexts), JSON.stringify(fittingTexts));
@@ -85,7 +85,7 @@ function storeInBothStorages(key, content, lastingContent = content) {
  * @returns {Work | null}
  */
 function validWork(value) {
-  if (typeof value?.text !== 'string' || value.text.length > MOST_CHARACTERS) return null;
+  if (typeof value?.text !== 'string' || value.text.length > MAX_CHARACTERS) return null;
   return {
     text: value.text,
     robot: isRobot(value.robot) ? value.robot : 'tinibot',
@@ -103,6 +103,6 @@ function validWork(value) {
 
 /** @param {any} value @returns {Program | null} */
 function validProgram(value) {
-  if (typeof value?.text !== 'string' || value.text.length > MOST_CHARACTERS || !isRobot(value.robot)) return null;
+  if (typeof value?.text !== 'string' || value.text.length > MAX_CHARACTERS || !isRobot(value.robot)) return null;
   return { text: value.text, robot: value.robot, name: typeof value.name === 'string' ? value.name.slice(0, 200) : '' };
 }

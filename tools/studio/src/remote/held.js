@@ -3,7 +3,7 @@
 
 /** @typedef {{keys: number, x: number, y: number}} HeldControls a bit for each key; to the right and up, in percent */
 
-export const MOST_PERCENT = 100;
+export const MAX_PERCENT = 100;
 export const NOTHING_HELD = Object.freeze({ keys: 0, x: 0, y: 0 });
 
 /** @param {HeldControls} first @param {HeldControls} second */
@@ -14,7 +14,7 @@ export function areControlsSame(first, second) {
 /** Where a stick is that was moved so far of what it can be. @param {number} right @param {number} up @returns {HeldControls} */
 export function controlsOfStick(right, up) {
   const length = Math.max(1, Math.hypot(right, up));
-  return { keys: 0, x: Math.round((MOST_PERCENT * right) / length) || 0, y: Math.round((MOST_PERCENT * up) / length) || 0 };
+  return { keys: 0, x: Math.round((MAX_PERCENT * right) / length) || 0, y: Math.round((MAX_PERCENT * up) / length) || 0 };
 }
 
 export class HeldByHolder {

@@ -8,7 +8,7 @@ const NORDIC_WRITE = '6e400002-b5a3-f393-e0a9-e50e24dcca9e';
 const NORDIC_NOTIFY = '6e400003-b5a3-f393-e0a9-e50e24dcca9e';
 const HM10_SERVICE = 0xffe0;
 const HM10_CHARACTERISTIC = 0xffe1;
-const MOST_WRITE_BYTES = 20; // bytes in a write
+const MAX_WRITE_BYTES = 20; // bytes in a write
 
 export const hasBluetooth = BLUETOOTH !== undefined;
 
@@ -55,7 +55,7 @@ export class BluetoothPort {
       this.#writeCharacteristic = characteristics.in;
       notifyCharacteristic = characteristics.out;
       // An HM-10 loses bytes that come faster than its UART passes them on.
-      if (characteristics.isSlow) this.#writePause_ms = Math.ceil((MOST_WRITE_BYTES * 10_000) / this.#baud);
+      if (characteristics.isSlow) this.#writePause_ms = Math.ceil((MAX_WRITE_BYTES * 10_000) / this.#baud);
       notifyCharacteristic.addEventListener('characteristicvaluechanged', (/** @type {any} */ event) => {
         const { value } = event.target;
         onData(new Uint8Array(value.buffer, value.byteOffset, value.byteLength));
@@ -97,8 +97,8 @@ export class BluetoothPort {
 
   /** @param {Uint8Array} data */
   async #writeChunks(data) {
-    for (let offset = 0; offset < data.length; offset += MOST_WRITE_BYTES) {
-      const chunk = data.slice(offset, offset + MOST_WRITE_BYTES);
+    for (let offset = 0; offset < data.length; offset += MAX_WRITE_BYTES) {
+      const chunk = data.slice(offset, offset + MAX_WRITE_BYTES);
       if (this.#writeCharacteristic.properties.writeWithoutResponse) await this.#writeCharacteristic.writeValueWithoutResponse(chunk);
       else await this.#writeCharacteristic.writeValueWithResponse(chunk);
       if (this.#writePause_ms) await pause(this.#writePause_ms);

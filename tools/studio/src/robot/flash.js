@@ -12,7 +12,7 @@ import { BOARDS, flash } from './stk500.js';
 /** @typedef {{robot: string, language: string, halts: boolean}} WantedFirmware of which robot; one that halts answers no text */
 
 const FLASH_BYTES = 0x8000; // of an Uno or a Nano
-const MOST_BYTES = 0x50_0000; // of a file; a full flash of an ESP32 has 4 MB
+const MAX_BYTES = 0x50_0000; // of a file; a full flash of an ESP32 has 4 MB
 
 /** @typedef {import('../page/progress.js').WatchOptions} WatchOptions */
 
@@ -23,7 +23,7 @@ const MOST_BYTES = 0x50_0000; // of a file; a full flash of an ESP32 has 4 MB
  * @param {WatchOptions} watchOptions
  */
 export async function loadFirmware(wantedFirmware, board, watchOptions) {
-  const data = wantedFirmware instanceof File ? await wantedFirmware.slice(0, MOST_BYTES).arrayBuffer() : await fetchFirmware(wantedFirmware, board, watchOptions);
+  const data = wantedFirmware instanceof File ? await wantedFirmware.slice(0, MAX_BYTES).arrayBuffer() : await fetchFirmware(wantedFirmware, board, watchOptions);
   return new Uint8Array(data);
 }
 

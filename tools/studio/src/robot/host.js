@@ -16,7 +16,7 @@ import { removeForeignWorkers } from '../page/offline.js';
 const TOKEN_KEY = 'tiniscript.token';
 const LOADED_CODE_KEY = 'tiniscript.loaded'; // the code for which the page was loaded again
 const BEAT_INTERVAL_MS = 100;
-const LEAST_BEAT_INTERVAL_MS = 30; // between two beats, as between two words of a remote control: a class takes forty requests a second of a pupil
+const MIN_BEAT_INTERVAL_MS = 30; // between two beats, as between two words of a remote control: a class takes forty requests a second of a pupil
 const SILENCE_LIMIT_MS = 3000; // without an answer
 const REQUEST_LIMIT_MS = 2000;
 const CONNECT_TRIES = 3;
@@ -107,7 +107,7 @@ export class HostRobot extends RequestQueue {
   #lastNewsNumber = 0;
   #isAsking = false;
   #lastAnswer_ms = 0;
-  #lastBeat_ms = -LEAST_BEAT_INTERVAL_MS; // the newest beat
+  #lastBeat_ms = -MIN_BEAT_INTERVAL_MS; // the newest beat
   /** @type {(robotInfo: RobotInfo) => void} */
   #resolveConnect = () => {};
   /** @type {(error: Error) => void} */
@@ -176,7 +176,7 @@ export class HostRobot extends RequestQueue {
   async send() {
     if (this.isOver || this.#isAsking || !this.#isConnected) return;
     clearTimeout(this.sendTimer);
-    const early_ms = this.#lastBeat_ms + LEAST_BEAT_INTERVAL_MS - performance.now();
+    const early_ms = this.#lastBeat_ms + MIN_BEAT_INTERVAL_MS - performance.now();
     if (early_ms > 0) {
       this.sendTimer = window.setTimeout(() => this.send(), early_ms);
       return;

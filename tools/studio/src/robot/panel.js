@@ -46,7 +46,7 @@ import { shownName, findShow } from '../writing/shows.js';
 // The keys of robots that this browser keeps: the text of a file of keys, as `tsc set owner --list` writes it. Who uses
 // this browser uses them; the page gives them to no one but the robot's session.
 const KEYS_STORAGE_KEY = 'tiniscript.link.keys';
-const MOST_KNOWN_PROGRAMS = 20;
+const MAX_KNOWN_PROGRAMS = 20;
 const PORT_NOTICE_MS = 2500; // after which it is said that nothing answers at a port yet
 const ANSWER_NOTICE_MS = 2000; // after which it is said that the robot has not answered yet
 
@@ -554,7 +554,7 @@ export class RobotPanel {
   #rememberProgram(program) {
     this.#knownPrograms.delete(program.program);
     this.#knownPrograms.set(program.program, program);
-    for (const [oldestChecksum] of this.#knownPrograms) if (this.#knownPrograms.size > MOST_KNOWN_PROGRAMS) this.#knownPrograms.delete(oldestChecksum);
+    for (const [oldestChecksum] of this.#knownPrograms) if (this.#knownPrograms.size > MAX_KNOWN_PROGRAMS) this.#knownPrograms.delete(oldestChecksum);
   }
 
   /** The text of a program, if it is one of this page. @param {string} [checksum] */

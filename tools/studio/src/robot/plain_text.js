@@ -4,7 +4,7 @@ import { hasText, text } from '../page/texts.js';
 
 /** @typedef {import('./transport.js').Answer} Answer */
 
-const MOST_CHARACTERS = 200; // of a name or a text
+const MAX_CHARACTERS = 200; // of a name or a text
 
 /** @param {Answer} answer */
 export function refusalText({ failure = '', said: sentence = '', advice = '' }) {
@@ -13,7 +13,7 @@ export function refusalText({ failure = '', said: sentence = '', advice = '' }) 
 }
 
 /** What somebody else has written, without what moves or hides text. @param {string} text */
-export function asPlainText(text, mostCharacters = MOST_CHARACTERS) {
+export function asPlainText(text, mostCharacters = MAX_CHARACTERS) {
   const plain = text.replace(/[\p{C}\p{Zl}\p{Zp}]/gu, '?');
   return plain.length > mostCharacters ? `${plain.slice(0, mostCharacters)}…` : plain;
 }

@@ -10,10 +10,10 @@ import { Run } from '../virtual/runs.js';
 /** @typedef {import('./transport.js').RobotEvent} RobotEvent */
 /** @typedef {import('../python.js').CheckResult} CheckResult */
 
-const MOST_EVENTS = 10_000; // events; then it is over
-const MOST_MS = 600_000;
+const MAX_EVENTS = 10_000; // events; then it is over
+const MAX_MS = 600_000;
 const UNREAD_PREFIX = 'UNREAD '; // a row that says so of a sensor
-const MOST_PROGRAMS = 20; // programs
+const MAX_PROGRAMS = 20; // programs
 
 export class Recorder {
   #page;
@@ -46,7 +46,7 @@ export class Recorder {
   /** A robot gets a program, or may get it from others of the group. @param {CheckResult} checkResult */
   addProgram(checkResult) {
     this.#sentPrograms.delete(checkResult.program);
-    for (const [oldestChecksum] of this.#sentPrograms) if (this.#sentPrograms.size >= MOST_PROGRAMS) this.#sentPrograms.delete(oldestChecksum);
+    for (const [oldestChecksum] of this.#sentPrograms) if (this.#sentPrograms.size >= MAX_PROGRAMS) this.#sentPrograms.delete(oldestChecksum);
     this.#sentPrograms.set(checkResult.program, { checkResult, text: pageState.programText.value, robot: pageState.robotName.value });
   }
 
@@ -70,7 +70,7 @@ export class Recorder {
   end(event) {
     this.resume();
     if (this.#isOver) return;
-    const duration_ms = Math.min(this.#elapsed_ms, MOST_MS);
+    const duration_ms = Math.min(this.#elapsed_ms, MAX_MS);
     this.#run?.addRow([duration_ms, event]);
     if (this.#run) this.#run.end_ms = duration_ms;
     this.#isOver = true;
@@ -90,7 +90,7 @@ export class Recorder {
     if (!rowText || this.#isOver || !this.#run) return;
     this.#began_ms = Math.min(this.#began_ms ?? Infinity, performance.now() - (event.ms ?? 0));
     if (event.event !== 'SHOW') this.end(rowText);
-    else if (this.#run.rows.length >= MOST_EVENTS || this.#elapsed_ms > MOST_MS) this.end('STOPPED');
+    else if (this.#run.rows.length >= MAX_EVENTS || this.#elapsed_ms > MAX_MS) this.end('STOPPED');
     else this.#run.addRow([event.ms ?? this.#elapsed_ms, rowText]);
     this.#show();
   }
@@ -101,7 +101,7 @@ export class Recorder {
     for (const row of rows) {
       const [event_ms, text] = row;
       this.#began_ms ??= performance.now() - event_ms;
-      if (this.#run.rows.length >= MOST_EVENTS || event_ms > MOST_MS) return this.end('STOPPED');
+      if (this.#run.rows.length >= MAX_EVENTS || event_ms > MAX_MS) return this.end('STOPPED');
       this.#run.addRow(row);
       if (text.startsWith(UNREAD_PREFIX)) this.#incompleteSensors.add(text.slice(UNREAD_PREFIX.length));
     }
@@ -122,7 +122,7 @@ export class Recorder {
     if (sentProgram) {
       const { checkResult, text, robot: robotName } = sentProgram;
       const run = this.#run = new Run({ of: 'real', text, robot: robotName, program: checksum, is_by_button: began_ms === null }, checkResult, null);
-      run.readClock = () => Math.min(MOST_MS, run === this.#run ? this.#elapsed_ms : run.rows.at(-1)?.[0] ?? 0);
+      run.readClock = () => Math.min(MAX_MS, run === this.#run ? this.#elapsed_ms : run.rows.at(-1)?.[0] ?? 0);
       this.#page.runs.addRun(run);
     }
     this.#show();

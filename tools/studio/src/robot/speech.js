@@ -7,8 +7,8 @@ import { hasText, textKey, text } from '../page/texts.js';
 
 /** @typedef {import('./transport.js').ConnectionFailure} ConnectionFailure */
 
-const MOST_SHOWN_LINES = 200; // lines of what the robot shows
-const MOST_SENTENCE_CHARACTERS = 1000;
+const MAX_SHOWN_LINES = 200; // lines of what the robot shows
+const MAX_SENTENCE_CHARACTERS = 1000;
 
 export class Speech {
   /** What is said, so that it can be said in another language or view. @type {() => string} */
@@ -31,7 +31,7 @@ export class Speech {
   /** @param {ConnectionFailure} failure @param {() => string} [makeAddition] that is said with it */
   sayFailure(failure, makeAddition = () => '') {
     const key = `why_${failure.reason}`;
-    const sentence = asPlainText(failure.details, MOST_SENTENCE_CHARACTERS);
+    const sentence = asPlainText(failure.details, MAX_SENTENCE_CHARACTERS);
     const isKnown = hasText(key) && (!sentence || failure.reason.startsWith('link_'));
     this.sayAnew(() => `${isKnown ? text(key) : sentence || text('why_bug')} ${makeAddition()}`.trim(), failure.reason);
   }
@@ -67,7 +67,7 @@ export class Speech {
   /** @param {string} line */
   addLine(line) {
     this.#shownLines.push(line);
-    if (this.#shownLines.length > MOST_SHOWN_LINES) this.#shownLines.splice(0, this.#shownLines.length - MOST_SHOWN_LINES);
+    if (this.#shownLines.length > MAX_SHOWN_LINES) this.#shownLines.splice(0, this.#shownLines.length - MAX_SHOWN_LINES);
     this.#shownElement.textContent = this.#shownLines.join('\n');
     this.#shownElement.scrollTop = this.#shownElement.scrollHeight;
   }

@@ -28,7 +28,7 @@ import { findShow } from '../writing/shows.js';
 const STORAGE_KEY = 'tiniscript.watches'; // whether somebody has wanted it
 const SHOW_BITS = 180; // of a value on the line
 const LOAD_DIVISOR = 3; // a third of what the line can carry, at most
-const LEAST_INTERVAL_MS = 200; // between two readings: nobody reads more often
+const MIN_INTERVAL_MS = 200; // between two readings: nobody reads more often
 const RESTART_PAUSE_MS = 1000; // after a program, before it begins again
 const EMPTY_LINE = 'W(0)'; // a line that ends at once, in the place of the other one
 /** What the program before reads no more after. */
@@ -222,7 +222,7 @@ export class SensorWatch {
 
   get #lineText() {
     const statements = this.#sensors.map((device) => `SHOW(${device.text});`);
-    const interval_ms = Math.max(LEAST_INTERVAL_MS, (LOAD_DIVISOR * SHOW_BITS * statements.length * 1000) / (robotOf(this.#robotName)?.baud ?? 9600));
+    const interval_ms = Math.max(MIN_INTERVAL_MS, (LOAD_DIVISOR * SHOW_BITS * statements.length * 1000) / (robotOf(this.#robotName)?.baud ?? 9600));
     return `LOOP(FOREVER);${statements.join('')}W(${Math.ceil(interval_ms / 50) / 20});END_LOOP`;
   }
 

@@ -2,7 +2,7 @@
 
 import { element } from '../page/elements.js';
 import { makeButton, makeSvg, makeLabel, makeElement } from '../page/made.js';
-import { storeOwnRobot, COLOURS, MOST_NAME_CHARACTERS } from '../page/own_robot.js';
+import { storeOwnRobot, COLOURS, MAX_NAME_CHARACTERS } from '../page/own_robot.js';
 import { pageState } from '../page/page_state.js';
 import { text } from '../page/texts.js';
 
@@ -18,7 +18,7 @@ export class OwnRobotWindow {
     this.#dialog.id = 'own';
     this.#dialog.setAttribute('aria-labelledby', heading.id);
     this.#nameInput.id = 'own_name';
-    this.#nameInput.maxLength = MOST_NAME_CHARACTERS;
+    this.#nameInput.maxLength = MAX_NAME_CHARACTERS;
     this.#nameInput.autocomplete = 'off';
     this.#nameInput.addEventListener('input', () => this.#changeOwnRobot({ name: this.#nameInput.value }));
     this.#colourGroup.setAttribute('role', 'radiogroup');

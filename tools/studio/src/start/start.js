@@ -19,7 +19,7 @@ import { makeThumbnail } from './thumbnail.js';
  * @property {() => void} leaveProgram the program
  */
 
-const MOST_PROGRAMS = 6; // earlier programs; all are in their window
+const MAX_PROGRAMS = 6; // earlier programs; all are in their window
 
 export class Start {
   #page;
@@ -82,7 +82,7 @@ export class Start {
     if (!isStartShown()) return;
     this.#showProgress();
     const timeFormat = new Intl.DateTimeFormat(currentLanguage(), { dateStyle: 'short', timeStyle: 'short' });
-    const rows = loadVersions().map((version, index, versions) => /** @type {const} */ ([version, versions.length - index])).slice(0, MOST_PROGRAMS).map(([version, number]) => {
+    const rows = loadVersions().map((version, index, versions) => /** @type {const} */ ([version, versions.length - index])).slice(0, MAX_PROGRAMS).map(([version, number]) => {
       const titleElement = makeElement('strong', '', versionTitle(version, number)), timeElement = makeElement('time', '', timeFormat.format(new Date(version.at_ms)));
       return makeElement('li', '', makeButton('', () => this.#page.putProgram(version), makeThumbnail(version.text, version.robot), titleElement, timeElement));
     });

@@ -5,8 +5,8 @@ import { COLOURS } from '../blocks/colours.js';
 import { makeSvg } from '../page/made.js';
 import { KINDS, wordsOf } from '../page/words.js';
 
-const MOST_BARS = 7; // bars
-const ROW_HEIGHT = 9, BAR_HEIGHT = 7, INDENT = 7, MOST_BAR_WIDTH = 60;
+const MAX_BARS = 7; // bars
+const ROW_HEIGHT = 9, BAR_HEIGHT = 7, INDENT = 7, MAX_BAR_WIDTH = 60;
 const OPENING_WORD = /^(LOOP|REPEAT|WHILE|IF|DEF|TASK|WHEN)\b/i, ARM_WORD = /^ELSE/i, CLOSING_WORD = /^END/i;
 
 /**
@@ -26,11 +26,11 @@ export function makeThumbnail(programText, robotName) {
     if (!CLOSING_WORD.test(line)) {
       const role = words.get(/^\w*/.exec(line)?.[0].toUpperCase() ?? '')?.role ?? '';
       const colour = OPENING_WORD.test(line) || ARM_WORD.test(line) ? COLOURS['control'] : COLOURS[KINDS[role === 'actuator' ? 'set' : role]?.colour ?? 'names'];
-      const width = Math.min(MOST_BAR_WIDTH, 14 + 3 * line.length);
+      const width = Math.min(MAX_BAR_WIDTH, 14 + 3 * line.length);
       bars.push(makeSvg('rect', { x: 3 + depth * INDENT, y: 3 + bars.length * ROW_HEIGHT, width, height: BAR_HEIGHT, rx: 2, fill: colour ?? '' }));
     }
     if (OPENING_WORD.test(line) || ARM_WORD.test(line)) depth = Math.min(3, depth + 1);
-    if (bars.length === MOST_BARS) break;
+    if (bars.length === MAX_BARS) break;
   }
-  return makeSvg('svg', { viewBox: `0 0 96 ${MOST_BARS * ROW_HEIGHT + 3}`, 'aria-hidden': 'true' }, ...bars);
+  return makeSvg('svg', { viewBox: `0 0 96 ${MAX_BARS * ROW_HEIGHT + 3}`, 'aria-hidden': 'true' }, ...bars);
 }

@@ -16,14 +16,14 @@ import { drawLitTile, drawSolids, drawWorld } from '../world/floor.js';
 
 const REDUCED_MOTION_QUERY = matchMedia('(prefers-reduced-motion: reduce)');
 const MARGIN_CM = 4;
-const LEAST_ROBOT_PX = 72; // pixels of a robot that the camera follows,
-const MOST_ROBOT_SHARE = 0.4; // unless that is more of the picture's shorter side
+const MIN_ROBOT_PX = 72; // pixels of a robot that the camera follows,
+const MAX_ROBOT_SHARE = 0.4; // unless that is more of the picture's shorter side
 const BEHIND_HEIGHT_SHARE = 0.78; // of the picture's height is ahead of a robot that is seen from behind
 const BEHIND_ZOOM = 1.7; // than from above: what is far is small then
 /** @typedef {'whole' | 'near' | 'behind'} Camera */
 const FINGER_PX = 22; // pixels that a finger may miss
-const MOST_TRACK_POINTS = 5000; // of a way
-const MOST_OLD_TRACKS = 4; // of runs before, which are pale
+const MAX_TRACK_POINTS = 5000; // of a way
+const MAX_OLD_TRACKS = 4; // of runs before, which are pale
 const SHAKE_MS = 240;
 const BUBBLE_MS = 2500; // of the robot's time, for what it shows
 
@@ -91,7 +91,7 @@ export class Arena {
     this.#goals = goals;
     this.#pose = pose;
     this.#robot = robotOf(robotName) ?? ROBOTS[0];
-    this.#tracks = [...this.#tracks.filter((track) => track.length > 1), []].slice(-1 - MOST_OLD_TRACKS);
+    this.#tracks = [...this.#tracks.filter((track) => track.length > 1), []].slice(-1 - MAX_OLD_TRACKS);
     this.#rolled_cm = [0, 0];
     this.#lastState_ms = 0;
     this.#beepTimes_ms = [0, 0];
@@ -127,8 +127,8 @@ export class Arena {
     const track = this.#tracks.at(-1) ?? [];
     const lastPoint = track.at(-1);
     if (!lastPoint || Math.hypot(lastPoint[0] - x, lastPoint[1] - y) > 0.5) track.push([x, y]);
-    if (track.length > MOST_TRACK_POINTS) {
-      track.splice(0, MOST_TRACK_POINTS / 2);
+    if (track.length > MAX_TRACK_POINTS) {
+      track.splice(0, MAX_TRACK_POINTS / 2);
       this.#isFloorDrawn = false;
     }
     const elapsed_s = Math.max(0, state.now_ms - this.#lastState_ms) / 1000;
@@ -218,7 +218,7 @@ export class Arena {
     const wholeScale = Math.min(width / (wholeSize[0] ?? 1), height / (wholeSize[1] ?? 1));
     const camera = this.#floorMark ? 'whole' : this.#camera;
     const robotLength = Math.max(...(this.#robot?.outline ?? [[1]]).map(([ahead = 0]) => ahead)) - Math.min(...(this.#robot?.outline ?? [[0]]).map(([ahead = 0]) => ahead));
-    const robotSize_px = Math.min(LEAST_ROBOT_PX * (window.devicePixelRatio || 1), MOST_ROBOT_SHARE * Math.min(width, height));
+    const robotSize_px = Math.min(MIN_ROBOT_PX * (window.devicePixelRatio || 1), MAX_ROBOT_SHARE * Math.min(width, height));
     const scale = camera === 'whole' ? wholeScale : Math.max(wholeScale, (robotSize_px * (camera === 'behind' ? BEHIND_ZOOM : 1)) / robotLength);
     if (Math.abs(scale - this.#scale) > 1e-9 || this.#floorCanvas.width !== Math.ceil((wholeSize[0] ?? 0) * scale)) {
       this.#scale = scale;

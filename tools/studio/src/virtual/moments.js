@@ -6,9 +6,9 @@
 /** @typedef {RobotState & {shown: RobotState['events']}} Moment also what each SHOW has shown last, in the order in which they began to */
 
 const KEYFRAME_INTERVAL = 16; // of so many moments one is kept whole
-const LEAST_MS = 40; // of the robot's time between two moments in which nothing happens
+const MIN_MS = 40; // of the robot's time between two moments in which nothing happens
 const RUN_KEYS = new Set(['rows', 'is_full', 'is_over', 'parting']); // of the run, not of a moment
-const MOST_CHARACTERS = 2_000_000; // characters; then of the moments in which nothing happens every other one is forgotten
+const MAX_CHARACTERS = 2_000_000; // characters; then of the moments in which nothing happens every other one is forgotten
 
 export class Moments {
   #mostCharacters;
@@ -29,7 +29,7 @@ export class Moments {
   #cachedMoment = null;
 
   /** @param {number} [mostCharacters] characters */
-  constructor(mostCharacters = MOST_CHARACTERS) {
+  constructor(mostCharacters = MAX_CHARACTERS) {
     this.#mostCharacters = mostCharacters;
   }
 
@@ -81,7 +81,7 @@ export class Moments {
     const values = new Map(Object.entries(state).filter(([key]) => !RUN_KEYS.has(key)).map(([key, value]) => [key, JSON.stringify(value, roundNumber)]));
     const isPart = values.get('places') !== this.#lastValues.get('places') || values.get('at') !== this.#lastValues.get('at');
     const isEvent = state.events.some(isAction) || values.get('bumps') !== this.#lastValues.get('bumps');
-    if (this.length && !isPart && !isEvent && state.is_running && state.now_ms - this.last_ms < LEAST_MS) return;
+    if (this.length && !isPart && !isEvent && state.is_running && state.now_ms - this.last_ms < MIN_MS) return;
     const moment = this.length;
     if (isEvent) this.#eventMoments.push(moment);
     if (isPart) this.#partMoments.push(moment);

@@ -17,7 +17,7 @@ const TIRED_MS = 4000; // for which it has not moved
 const BLINK_MS = 140;
 const BLINK_INTERVAL_MS = 2900; // from one blink to the next
 
-const MOST_TIMES = 1000; // crashes, flags and rests that are remembered, each
+const MAX_TIMES = 1000; // crashes, flags and rests that are remembered, each
 
 /** @type {Face} */
 export const CALM_FACE = { mood: 'calm', ahead: 0, aside: 0, isBlinking: false };
@@ -55,7 +55,7 @@ export class Moods {
     if (motors.some((power) => power !== 0)) {
       if (lastRest) lastRest.until_ms = Math.min(lastRest.until_ms, now_ms);
     } else if (!lastRest || lastRest.until_ms < Infinity) this.#rests.push({ from_ms: now_ms, until_ms: Infinity });
-    for (const times of [this.#bumpTimes_ms, this.#flagTimes_ms, this.#rests]) if (times.length > MOST_TIMES) times.shift();
+    for (const times of [this.#bumpTimes_ms, this.#flagTimes_ms, this.#rests]) if (times.length > MAX_TIMES) times.shift();
     this.#bumpCount = bumps;
     this.#takenFlagCount = takenFlagCount;
     this.#lastState_ms = now_ms;

@@ -2,8 +2,8 @@
 
 import { drawPath } from '../page/shapes.js';
 
-const MOST_SAMPLES = 2000; // samples; then every other one is forgotten
-const LEAST_ROW_PX = 54; // pixels for one value
+const MAX_SAMPLES = 2000; // samples; then every other one is forgotten
+const MIN_ROW_PX = 54; // pixels for one value
 const MARGIN_PX = 6;
 const LIGHT_COLORS = { rule: '#c8d2dc', label: '#4a5663', labelBackground: 'rgb(255 255 255 / 80%)', rows: ['#0b4f9e', '#a8200f', '#0d6040', '#7a4b00', '#5b2a86', '#00616b'] };
 const DARK_COLORS = { rule: '#3b4d5f', label: '#b8c5d1', labelBackground: 'rgb(27 40 54 / 80%)', rows: ['#8cc0ff', '#ff9e90', '#62d49d', '#ffc76b', '#c9a6ff', '#6fd6e0'] };
@@ -43,7 +43,7 @@ export class Plot {
     }
     this.#skipCount = this.#keptInterval - 1;
     this.#samples.push(sample);
-    if (this.#samples.length <= MOST_SAMPLES) return;
+    if (this.#samples.length <= MAX_SAMPLES) return;
     this.#samples = this.#samples.filter((_, index) => index % 2 === 0);
     this.#keptInterval *= 2;
   }
@@ -59,7 +59,7 @@ export class Plot {
     const container = canvas.parentElement;
     if (!container || container.hidden || !container.clientHeight) return; // what is hidden is not laid out for it
     const names = this.names;
-    const rowHeight = Math.max(LEAST_ROW_PX, Math.floor((container.clientHeight - 22) / Math.max(1, names.length)));
+    const rowHeight = Math.max(MIN_ROW_PX, Math.floor((container.clientHeight - 22) / Math.max(1, names.length)));
     canvas.style.height = `${Math.max(container.clientHeight, names.length * rowHeight + 20)}px`;
     const ratio = window.devicePixelRatio || 1;
     const width = Math.max(1, Math.round(canvas.clientWidth * ratio));

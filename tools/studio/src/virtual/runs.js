@@ -16,17 +16,17 @@ import { blocksOf } from './why.js';
  * @property {boolean} [is_by_button] a real robot's, whose program waits for its button
  */
 
-const MOST_RUNS = 10;
-const MOST_CHARACTERS = 2_000_000; // characters of all of them
-const MOST_MOMENT_CHARACTERS = 1_200_000; // of one
-const MOST_MARKS = 10_000;
+const MAX_RUNS = 10;
+const MAX_CHARACTERS = 2_000_000; // characters of all of them
+const MAX_MOMENT_CHARACTERS = 1_200_000; // of one
+const MAX_MARKS = 10_000;
 const MARK_WORDS = new Set(['BEEP', 'SHOW', 'FAULT']);
 
 export class Run {
   /** @type {RunOrigin} */
   origin;
   number = 0;
-  moments = new Moments(MOST_MOMENT_CHARACTERS);
+  moments = new Moments(MAX_MOMENT_CHARACTERS);
   /** @type {{at_ms: number, kind: string}[]} */
   marks = [];
   /** @type {Row[]} */
@@ -124,7 +124,7 @@ export class Run {
   /** @param {number} at_ms @param {string} kind */
   mark(at_ms, kind) {
     this.marks.push({ at_ms, kind });
-    if (this.marks.length > MOST_MARKS) this.marks.splice(0, MOST_MARKS / 2);
+    if (this.marks.length > MAX_MARKS) this.marks.splice(0, MAX_MARKS / 2);
   }
 
   /** What a sensor read last until a time of the robot, as the program read it. @param {string} name @param {number} at_ms @returns {string | undefined} */
@@ -165,6 +165,6 @@ export class Runs {
 
   /** Forgets the oldest ones, where there are too many or they are too large. */
   forgetOldest() {
-    while (this.#runs.length > 1 && (this.#runs.length > MOST_RUNS || this.characterCount > MOST_CHARACTERS)) this.#runs.shift();
+    while (this.#runs.length > 1 && (this.#runs.length > MAX_RUNS || this.characterCount > MAX_CHARACTERS)) this.#runs.shift();
   }
 }

@@ -9,10 +9,10 @@ import { currentLanguage } from '../page/texts.js';
 /** @import { HeldControls } from '../remote/held.js' */
 /** @typedef {'off' | 'running' | 'paused' | 'ended'} Phase */
 
-const MOST_REQUEST_MS = 400; // of the robot's time that is asked for at once: a stop waits for no more
-const MOST_FRAME_MS = 100; // of this computer's time at most for one picture
+const MAX_REQUEST_MS = 400; // of the robot's time that is asked for at once: a stop waits for no more
+const MAX_FRAME_MS = 100; // of this computer's time at most for one picture
 const STEP_LIMIT_MS = 60_000;
-const MOST_TRACE_LINES = 5000; // lines of the trace
+const MAX_TRACE_LINES = 5000; // lines of the trace
 
 export class Simulator {
   #python;
@@ -100,7 +100,7 @@ export class Simulator {
     if (this.phase !== 'paused' || this.#isAsking) return;
     const until_ms = (this.state?.now_ms ?? 0) + STEP_LIMIT_MS;
     do {
-      await this.#advance({ do: 'step', limit_ms: MOST_REQUEST_MS });
+      await this.#advance({ do: 'step', limit_ms: MAX_REQUEST_MS });
     } while (
       this.phase === 'paused' &&
       this.state?.is_running &&
@@ -148,11 +148,11 @@ export class Simulator {
   async #onFrame(now_ms) {
     if (this.phase !== 'running') return;
     if (!this.#isAsking) {
-      this.#unasked_ms += Math.min(MOST_FRAME_MS, now_ms - this.#lastFrame_ms) * this.shownSpeed;
+      this.#unasked_ms += Math.min(MAX_FRAME_MS, now_ms - this.#lastFrame_ms) * this.shownSpeed;
       this.#lastFrame_ms = now_ms;
-      const duration_ms = Math.min(MOST_REQUEST_MS, Math.floor(this.#unasked_ms));
+      const duration_ms = Math.min(MAX_REQUEST_MS, Math.floor(this.#unasked_ms));
       if (duration_ms > 0) {
-        this.#unasked_ms = Math.min(this.#unasked_ms - duration_ms, MOST_REQUEST_MS);
+        this.#unasked_ms = Math.min(this.#unasked_ms - duration_ms, MAX_REQUEST_MS);
         await this.#advance({ do: 'go', duration_ms });
       }
     }
@@ -201,7 +201,7 @@ export class Simulator {
       if (event === 'START') this.trace = [];
       else this.trace.push(`${event_ms - (state.began_ms ?? 0)} ${event}`);
     }
-    if (this.trace.length > MOST_TRACE_LINES) this.trace.splice(0, this.trace.length - MOST_TRACE_LINES);
+    if (this.trace.length > MAX_TRACE_LINES) this.trace.splice(0, this.trace.length - MAX_TRACE_LINES);
     const isDriving = this.phase === 'running' || this.phase === 'paused';
     if (isDriving && this.#hasEnded(state)) this.phase = 'ended';
     if (this.phase === 'running' && state.is_held) this.phase = 'paused';

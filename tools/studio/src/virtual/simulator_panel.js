@@ -45,7 +45,7 @@ import { WorldDrawing } from '../world/drawing.js';
  * @property {(program: {text: string, robot: string}) => void} putProgram the program of a recorded run into the editor
  */
 
-const MOST_TRACE_LINES = 200; // lines of the trace
+const MAX_TRACE_LINES = 200; // lines of the trace
 const READINGS_INTERVAL_MS = 100; // nobody reads what changes more often; where the program is and what is measured take turns
 const SPEEDS = [0.1, 0.5, 1, 4, 20]; // times as quick as the robot
 const LONGEST_REPLAY_MS = 6000; // at most for a run of a lesson, or a recorded one
@@ -621,7 +621,7 @@ export class SimulatorPanel {
     setText(this.#pauseButton, text(phase === 'paused' ? 'go_on' : 'pause'));
     setHidden(this.#pushButton, !state?.is_waiting || phase !== 'running');
     setText(element('doing', HTMLElement), this.#note || this.#worldDrawing.notice || [pageState.ownRobot.value.name, this.#statusText()].filter(Boolean).join(': '));
-    const traceText = trace.slice(-MOST_TRACE_LINES).join('\n');
+    const traceText = trace.slice(-MAX_TRACE_LINES).join('\n');
     if (traceText !== this.#traceText) element('trace', HTMLElement).textContent = this.#traceText = traceText;
     this.#showScore(state?.score ?? null);
     this.#announcer.announce(state, phase);

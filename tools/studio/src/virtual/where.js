@@ -11,7 +11,7 @@ import { text } from '../page/texts.js';
 const ANNOUNCE_INTERVAL_MS = 5000; // of this computer's time, while it drives
 const DIRECTION_KEYS = /** @type {const} */ (['where_right', 'where_up_right', 'where_up', 'where_up_left', 'where_left', 'where_down_left', 'where_down', 'where_down_right']);
 const BUMP_SIDE_KEYS = /** @type {const} */ (['where_bump_front', 'where_bump_left', 'where_bump_back', 'where_bump_right']); // of the robot, counterclockwise
-const MOST_STARS = 3;
+const MAX_STARS = 3;
 
 export class RunAnnouncer {
   #announcementElement = element('where', HTMLElement);
@@ -69,7 +69,7 @@ function placeSentence([x = 0, y = 0, heading = 0]) {
 function scoreSentence(score) {
   const { stars, points, taken: takenFlagCount, of: flagCount } = score;
   const sentences = [flagCount ? text('score_flags', { taken: takenFlagCount, of: flagCount }) : '', boutEndText(score), text('score_points', { points })].filter(Boolean);
-  if (stars) sentences.push(text('score_stars', { stars, most: MOST_STARS }));
+  if (stars) sentences.push(text('score_stars', { stars, most: MAX_STARS }));
   return sentences.join(' ');
 }
 
@@ -81,5 +81,5 @@ export function boutEndText({ pushed, rivals, has_fallen }) {
 
 /** @param {number} stars */
 export function starsText(stars) {
-  return '★'.repeat(stars) + '☆'.repeat(MOST_STARS - stars);
+  return '★'.repeat(stars) + '☆'.repeat(MAX_STARS - stars);
 }

@@ -19,8 +19,8 @@ import { partName, showNumbers } from './numbers.js';
 const STEP_CM = 5;
 const FINE_STEP_CM = 1;
 const TURN_DEGREES = 15; // degrees
-const MOST_SPOKEN_NUMBERS = 2; // numbers of a part; all are beside it
-const MOST_UNDO_STEPS = 200; // changes that can be undone
+const MAX_SPOKEN_NUMBERS = 2; // numbers of a part; all are beside it
+const MAX_UNDO_STEPS = 200; // changes that can be undone
 /** @type {Record<string, Point>} */
 const ARROW_DIRECTIONS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 
@@ -165,7 +165,7 @@ export class WorldDrawing {
     const value = valueOf(this.#page.getWorld(), this.#chosenPart);
     const point = value.points?.[this.#pointIndex];
     const numbers = point ? `${text('world_point')} ${this.#pointIndex + 1}: ${point.join(', ')}`
-      : NUMBERS[this.#chosenPart.kind].slice(0, MOST_SPOKEN_NUMBERS).map(([key]) => `${text(textKey(`world_${key}`))} ${value[key]}`).join(', ');
+      : NUMBERS[this.#chosenPart.kind].slice(0, MAX_SPOKEN_NUMBERS).map(([key]) => `${text(textKey(`world_${key}`))} ${value[key]}`).join(', ');
     return numbers ? text('world_chosen', { part: partName(this.#chosenPart), numbers }) : partName(this.#chosenPart);
   }
 
@@ -174,7 +174,7 @@ export class WorldDrawing {
     if (JSON.stringify(world) === JSON.stringify(worldBefore)) return;
     const isOwn = this.#page.worldChoice.isOwn;
     this.#undoWorlds.push(isOwn ? worldBefore : copyAsOwn(worldBefore));
-    if (this.#undoWorlds.length > MOST_UNDO_STEPS) this.#undoWorlds.shift();
+    if (this.#undoWorlds.length > MAX_UNDO_STEPS) this.#undoWorlds.shift();
     this.#redoWorlds = [];
     this.#putWorld(isOwn ? world : copyAsOwn(world));
   }

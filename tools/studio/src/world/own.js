@@ -7,7 +7,7 @@ import { storeWorldTexts, loadWorldTexts } from '../programs/work.js';
 
 /** @typedef {import('./parts.js').World} World */
 
-const MOST_EARLIER = 5;
+const MAX_EARLIER = 5;
 const NAME_COMMENT = /^# (.*)\n/; // by the name of a file
 
 export class OwnWorlds {
@@ -30,7 +30,7 @@ export class OwnWorlds {
    * @param {boolean} isOther than the newest one, which is not lost
    */
   setNewest(world, isOther) {
-    if (isOther && this.newestWorld) this.earlierWorlds = [this.newestWorld, ...this.earlierWorlds].slice(0, MOST_EARLIER);
+    if (isOther && this.newestWorld) this.earlierWorlds = [this.newestWorld, ...this.earlierWorlds].slice(0, MAX_EARLIER);
     this.newestWorld = world;
   }
 
@@ -76,7 +76,7 @@ export class OwnWorlds {
     await this.#python.ready;
     const worlds = await Promise.all([newestText, ...earlierTexts].map((text) => this.#readWorld(text)));
     this.newestWorld = worlds[0] ?? null;
-    this.earlierWorlds = worlds.slice(1).filter((world) => world !== null).slice(0, MOST_EARLIER);
+    this.earlierWorlds = worlds.slice(1).filter((world) => world !== null).slice(0, MAX_EARLIER);
     return !newestText || this.newestWorld !== null;
   }
 

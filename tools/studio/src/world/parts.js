@@ -41,7 +41,7 @@ export const FLOOR = { kind: 'floor', index: 0 };
 /** @type {Part} */
 export const START = { kind: 'start', index: 0 };
 const LARGEST_CM = WORLD_LIMITS.cm;
-const LEAST_FLOOR_CM = 20;
+const MIN_FLOOR_CM = 20;
 const ROBOT_RADIUS_CM = 9; // from its middle: where it is taken
 const HANDLE_CM = 10; // from the front of a part to what turns it
 const TURN_STEP_DEGREES = 5; // degrees
@@ -54,7 +54,7 @@ const LINE_TOLERANCE_CM = 1; // how far a line may be from the way of a finger
  * @type {Record<Part['kind'], [string, number, number][]>}
  */
 export const NUMBERS = {
-  floor: [['width_cm', LEAST_FLOOR_CM, LARGEST_CM], ['height_cm', LEAST_FLOOR_CM, LARGEST_CM], ['ambient_percent', 0, 100], ['seconds', 0, WORLD_LIMITS.seconds]],
+  floor: [['width_cm', MIN_FLOOR_CM, LARGEST_CM], ['height_cm', MIN_FLOOR_CM, LARGEST_CM], ['ambient_percent', 0, 100], ['seconds', 0, WORLD_LIMITS.seconds]],
   start: [['x_cm', 0, LARGEST_CM], ['y_cm', 0, LARGEST_CM], ['heading', -360, 360]],
   walls: [],
   boxes: [['x_cm', 0, LARGEST_CM], ['y_cm', 0, LARGEST_CM], ['length_cm', SMALLEST_CM, LARGEST_CM], ['width_cm', SMALLEST_CM, LARGEST_CM], ['heading', -360, 360]],

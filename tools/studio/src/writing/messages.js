@@ -10,7 +10,7 @@ import { text } from '../page/texts.js';
 
 /** @import { CheckResult, Finding } from '../python.js' */
 
-const MOST_MESSAGES = 50; // messages that are shown at once
+const MAX_MESSAGES = 50; // messages that are shown at once
 
 /** What is said, and what to try, as one line. @param {{message?: string, fix?: string}} said @returns {string} */
 export function messageWithFix({ message = '', fix = '' }) {
@@ -32,7 +32,7 @@ function makeSentence(finding) {
  */
 export function showMessages(list, findings, goTo) {
   let firstMessage = '';
-  const rows = findings.slice(0, MOST_MESSAGES).map((finding) => {
+  const rows = findings.slice(0, MAX_MESSAGES).map((finding) => {
     const programText = pageState.programText.value, placeText = pageState.areBlocksNamed.value ? labelAt(programText, finding) : text('line', { line: finding.line });
     const placeButton = makeButton('', () => goTo(finding), placeText);
     placeButton.className = 'place';
@@ -42,7 +42,7 @@ export function showMessages(list, findings, goTo) {
     row.className = finding.severity;
     return row;
   });
-  if (findings.length > MOST_MESSAGES) rows.push(makeElement('li', '', text('more', { count: findings.length - MOST_MESSAGES })));
+  if (findings.length > MAX_MESSAGES) rows.push(makeElement('li', '', text('more', { count: findings.length - MAX_MESSAGES })));
   list.replaceChildren(...rows);
   setText(element('first_message', HTMLElement), firstMessage);
 }
@@ -59,7 +59,7 @@ export function showRepair(list, findingIndex, finding, repair) {
   repairButton.className = 'repair';
   const { fix } = findingAsSeen(finding);
   repairButton.setAttribute('aria-label', sentenceAtPlace('repair_line', 'repair_block', pageState.programText.value, finding, { fix }));
-  if (findingIndex < MOST_MESSAGES) list.children[findingIndex]?.append(' ', repairButton);
+  if (findingIndex < MAX_MESSAGES) list.children[findingIndex]?.append(' ', repairButton);
 }
 
 /** @param {CheckResult} checked @returns {string} */

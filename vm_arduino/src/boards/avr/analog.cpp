@@ -23,7 +23,7 @@ constexpr uint8_t kBandGap = 0x1e;
 #else
 constexpr uint8_t kBandGap = 0x0e;
 #endif
-constexpr uint16_t kMostCount = 281;  // 1024 * 1.1 V / 4.0 V: the supply is too low above it
+constexpr uint16_t kMaxCount = 281;  // 1024 * 1.1 V / 4.0 V: the supply is too low above it
 // The reference has a high resistance, so the converter's capacitor needs 1 to 2 ms to follow. Only
 // the last of these conversions (104 us each) is used.
 constexpr uint8_t kSupplyTries = 24;
@@ -122,7 +122,7 @@ Supply analog_supply() {
 #endif
   } else if (--near_converter->tries == 0) {
     near_converter->last_channel = kNoChannel;
-    return ADC > kMostCount ? Supply::kLow : Supply::kEnough;
+    return ADC > kMaxCount ? Supply::kLow : Supply::kEnough;
   }
   convert();
   return Supply::kMeasuring;

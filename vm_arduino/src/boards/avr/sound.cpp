@@ -13,7 +13,7 @@ namespace tiniscript {
 namespace {
 
 constexpr uint32_t kFastestHertz = 2000000;  // the timer's clock with the fastest prescaler
-constexpr uint16_t kMostCounts = 512;        // per period: 256 for each half
+constexpr uint16_t kMaxCounts = 512;        // per period: 256 for each half
 
 struct Sound {
   bool is_on;
@@ -50,7 +50,7 @@ void sound_start(uint16_t hertz, uint32_t duration_ms) {
   if (duration_ms == 0) return;
   uint16_t period = static_cast<uint16_t>((kFastestHertz + hertz / 2) / hertz);
   uint8_t prescaler = kFastest;
-  while (period >= kMostCounts) {
+  while (period >= kMaxCounts) {
     period = half(period);
     if (prescaler == 2 || prescaler == 6) period = half(period);  // four times as slow
     prescaler++;

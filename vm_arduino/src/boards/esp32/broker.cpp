@@ -32,7 +32,7 @@ constexpr uint32_t kSilentMs = 4000;   // of the broker, which answers pings
 constexpr uint32_t kPeerMs = 3000;     // of silence after which another client gets the robot
 constexpr size_t kPeerDigits = 8;
 constexpr size_t kChunk = 256;
-constexpr size_t kLeastStop = 4;
+constexpr size_t kMinStop = 4;
 constexpr char kOnline = '+';
 constexpr char kOffline = '-';
 
@@ -102,7 +102,7 @@ bool is_stop(const uint8_t* payload, size_t length) {
   for (size_t k = 0; k < length; k++) {
     if (payload[k] != 0) return false;
   }
-  return length >= kLeastStop;
+  return length >= kMinStop;
 }
 
 // The stop in a message of somebody of whom no other one is known. It begins with text, or with

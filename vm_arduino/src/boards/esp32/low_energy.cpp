@@ -25,15 +25,15 @@ constexpr char kService[] = "6e400001-b5a3-f393-e0a9-e50e24dcca9e";
 constexpr char kToRobot[] = "6e400002-b5a3-f393-e0a9-e50e24dcca9e";
 constexpr char kToComputer[] = "6e400003-b5a3-f393-e0a9-e50e24dcca9e";
 
-constexpr uint16_t kLeastMtu = 23;  // until another one is agreed
-constexpr uint16_t kMostMtu = 247;
+constexpr uint16_t kMinMtu = 23;  // until another one is agreed
+constexpr uint16_t kMaxMtu = 247;
 constexpr uint16_t kMtuHead = 3;    // bytes of it that are no payload
 constexpr uint8_t kPauseTurns = 4;  // between two notifications: the stack takes no more at once
 
 constexpr uint16_t kNobody = 0xffff;
 
 // The stack's task writes these, the radio's reads them.
-uint16_t mtu = kLeastMtu;
+uint16_t mtu = kMinMtu;
 uint16_t client = kNobody;  // the client with the place: the number of its connection
 uint8_t interface;
 bool has_subscribed;
@@ -45,7 +45,7 @@ uint32_t heard_ms;  // when something was heard of that client, or it came
 
 // The radio's task: a notification that waits, and for which client.
 uint16_t notify_handle;  // the handle of the characteristic
-uint8_t outgoing[kMostMtu - kMtuHead];
+uint8_t outgoing[kMaxMtu - kMtuHead];
 size_t length;
 uint8_t outgoing_client;
 uint8_t pause_turns;
@@ -87,7 +87,7 @@ void on_connect(uint8_t new_interface, uint16_t new_client) {
   if (client != kNobody) server->disconnect(client);
   drop_client();
   heard_ms = now_ms;
-  store_relaxed(&mtu, kLeastMtu);
+  store_relaxed(&mtu, kMinMtu);
   store_relaxed(&has_subscribed, false);
   store_relaxed(&interface, new_interface);
   store_relaxed(&client, new_client);
@@ -96,7 +96,7 @@ void on_connect(uint8_t new_interface, uint16_t new_client) {
 }
 
 void on_mtu(uint16_t new_mtu) {
-  store_relaxed(&mtu, new_mtu < kLeastMtu ? kLeastMtu : new_mtu > kMostMtu ? kMostMtu : new_mtu);
+  store_relaxed(&mtu, new_mtu < kMinMtu ? kMinMtu : new_mtu > kMaxMtu ? kMaxMtu : new_mtu);
 }
 
 // The core has done its part by then. The stack stops advertising after a connection: then no other
@@ -129,7 +129,7 @@ void low_energy_begin() {
   static BLE2902 notifications;
   subscription = &notifications;
   BLEDevice::init(radio_name().name);
-  BLEDevice::setMTU(kMostMtu);
+  BLEDevice::setMTU(kMaxMtu);
   BLEDevice::setCustomGattsHandler(on_event);
   server = BLEDevice::createServer();
   BLEService* const service = server->createService(kService);

@@ -173,7 +173,7 @@ void receive(Client* client) {
   if (!client->is_admitted && now_ms() - client->heard_ms >= kSilenceMs) end_silence(client);
 }
 
-void say(Client* client) {
+void send_output(Client* client) {
   if (client->socket == kNoSocket || !client->is_admitted) return;
   if (client->out_sent == client->out_length) {
     client->out_sent = client->out_length = 0;
@@ -207,7 +207,7 @@ void network_turn() {
   accept_next();
   for (Client& client : clients) {
     if (client.socket != kNoSocket) receive(&client);
-    say(&client);
+    send_output(&client);
   }
 }
 

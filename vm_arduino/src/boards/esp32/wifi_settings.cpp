@@ -27,7 +27,7 @@ namespace {
 constexpr uint8_t kReady = static_cast<uint8_t>(WifiState::kReady);
 constexpr uint32_t kJoinAgainMs = 15000;  // between two tries to join
 constexpr uint32_t kYoungMs = 20000;      // a restart so soon after WiFi began counts
-constexpr uint8_t kMostRestarts = 3;      // in a row: then WiFi rests
+constexpr uint8_t kMaxRestarts = 3;      // in a row: then WiFi rests
 constexpr uint8_t kRestsFlag = 0x80;      // flag of a mode
 
 // The layout in NVS. Texts end with a 0.
@@ -114,7 +114,7 @@ bool count_restart() {
   const bool is_known = (restart_record & ~(kYoungFlag | kRestartMask)) == kRecordMagic;
   uint32_t restarts = is_known ? restart_record & kRestartMask : 0;
   if (is_known && is_failure && (restart_record & kYoungFlag) != 0) restarts++;
-  const bool is_too_often = restarts >= kMostRestarts;
+  const bool is_too_often = restarts >= kMaxRestarts;
   restart_record = kRecordMagic | (is_too_often ? 0 : restarts);
   return is_too_often;
 }
@@ -131,7 +131,7 @@ Answer keep() {
 }
 
 Answer set(WifiMode mode) {
-  if (new_settings.network[0] == 0 || length_of(new_settings.password) < kLeastPassword) {
+  if (new_settings.network[0] == 0 || length_of(new_settings.password) < kMinPassword) {
     return Answer::kBadValue;
   }
   new_settings.kept_mode = static_cast<uint8_t>(mode);
