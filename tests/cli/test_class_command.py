@@ -193,7 +193,7 @@ def test_watching_changes_nothing(room: Class) -> None:
 
 def test_only_clients_that_drive_robots_have_to_keep_them_alive() -> None:
     room = SimpleNamespace(
-        address=("h", 1), group="c", options=SimpleNamespace(verb="class"),
+        address=("h", 1), class_name="c", options=SimpleNamespace(verb="class"),
         broker=SimpleNamespace(attend=print),
     )  # fmt: skip
     robots = [RobotPresence("00000001", "A", True), RobotPresence("00000002", "B", False)]
@@ -208,7 +208,10 @@ def test_messages_about_a_fleet_suggest_no_option_that_class_lacks() -> None:
     """Options that a class lacks have the fleet's default."""
     class_options = Options("class", "en").read(["upload"])
     room = SimpleNamespace(
-        address=("h", 1), group="c", options=class_options, broker=SimpleNamespace(attend=print)
+        address=("h", 1),
+        class_name="c",
+        options=class_options,
+        broker=SimpleNamespace(attend=print),
     )
     upload_options = Options("upload", "en").read([])
     assert class_options is not None and upload_options is not None
@@ -283,7 +286,7 @@ def test_the_exit_code_tells_the_outcome_for_the_robots(
         SimpleNamespace(
             options=options,
             language="en",
-            group="c",
+            class_name="c",
             present_robots=list,
             options_for=lambda *_: options,
             broker=SimpleNamespace(stop=lambda _: True),
@@ -322,8 +325,13 @@ def test_a_stop_succeeds_whichever_of_its_messages_is_lost(
             raise CommandError(3, "class_empty", group="c", host="h")
         return []
 
-    room = SimpleNamespace(broker=SimpleNamespace(stop=stop), group="c", present_robots=present,
-                           language="en", options_for=lambda *arguments: arguments)  # fmt: skip
+    room = SimpleNamespace(
+        broker=SimpleNamespace(stop=stop),
+        class_name="c",
+        present_robots=present,
+        language="en",
+        options_for=lambda *arguments: arguments,
+    )
 
     def ask(*arguments: object) -> int:
         calls.append(arguments)
