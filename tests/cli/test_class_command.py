@@ -74,7 +74,7 @@ class Class(list[Esp32PtyRobot]):
         return ["--broker", f"127.0.0.1:{self.broker.port}", "--class", "3b"]
 
     @property
-    def access(self) -> list[str]:
+    def access_options(self) -> list[str]:
         return [*self.place_options, "--user", "robots"]
 
     def close(self) -> None:
@@ -99,14 +99,14 @@ def broker(tmp_path: Path) -> Iterator[Mosquitto]:
 
 
 def tsc(room: Class, *words: str) -> CommandResult:
-    result = run_subprocess("class", *words, *room.access, data=SECRET + b"\n")
+    result = run_subprocess("class", *words, *room.access_options, data=SECRET + b"\n")
     assert SECRET.decode() not in result.out + result.err
     return result
 
 
 def start_endless_upload(room: Class) -> Command:
     """A command that stays and has all robots drive."""
-    command = Command("class", "upload", "-e", FOREVER, *room.access, data=SECRET + b"\n")
+    command = Command("class", "upload", "-e", FOREVER, *room.access_options, data=SECRET + b"\n")
     wait_until_all_drive(room)
     return command
 
@@ -149,7 +149,7 @@ def test_computers_without_a_key_can_watch_and_stop(
     wait_until_all_drive(room)
     become_another_computer(monkeypatch, tmp_path)
     for data in (b"wrong\n", b"\n", b""):
-        result = run_subprocess("class", *room.access, data=data)
+        result = run_subprocess("class", *room.access_options, data=data)
         assert result.code in (2, 3) and result.out == "" and "assword" in result.err, data
     run_subprocess("class", *room.place_options).gives(3, "refuses this computer")
     assert "no deja entrar" in run_subprocess("class", *room.place_options, "--lang", "es").err
@@ -180,7 +180,7 @@ def test_watching_changes_nothing(room: Class) -> None:
     """This holds even if the command was suspended for longer than a driver may be silent."""
     text = "SI|LOOP(FOREVER); F(0.3, 80); SHOW(5); END_LOOP"
     tsc(room, "upload", "-e", text, "--detach").gives(0)
-    command = Command("class", "show", *room.access, data=SECRET + b"\n")
+    command = Command("class", "show", *room.access_options, data=SECRET + b"\n")
     command.until("SHOW 5")
     command.signal(signal.SIGSTOP)
     advance_ms(room, 1200)

@@ -74,7 +74,7 @@ def test_an_interrupted_save_leaves_the_old_or_the_new_data(size: int) -> None:
     assert writes <= WRITES + blobs, "a program takes a few writes, not one for each byte"
 
 
-def test_nvs_has_room_for_two_programs_and_a_third() -> None:
+def test_partitions_fit_the_flash_and_the_simulated_nvs_is_as_large() -> None:
     """The simulated NVS has the room of the partition; that of min_spiffs.csv is too small."""
     text = (SOURCES / "partitions.csv").read_text(encoding="utf-8")
     rows = [re.split(r",\s*", row) for row in text.splitlines() if not row.startswith("#")]

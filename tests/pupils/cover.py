@@ -138,9 +138,9 @@ def choose_cover(
     chosen = []
     while uncovered:
         _, is_new, k = heapq.heappop(heap)
-        adds = -len(branches[k] & uncovered)
-        if heap and (adds, is_new, k) > heap[0]:
-            heapq.heappush(heap, (adds, is_new, k))
+        gain = len(branches[k] & uncovered)
+        if heap and (-gain, is_new, k) > heap[0]:
+            heapq.heappush(heap, (-gain, is_new, k))
             continue
         chosen.append(k)
         uncovered -= branches[k]

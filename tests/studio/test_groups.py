@@ -71,7 +71,7 @@ class Member:
 
     def request(self, **fields: Any) -> Json:
         page = self.page
-        seen_number = -1 if page.is_astray else page.number
+        seen_number = -1 if page.is_out_of_sync else page.number
         return {
             "page": page.name,
             "since": seen_number,

@@ -87,7 +87,7 @@ def test_no_change_spoils_the_program(seed: int) -> None:
             assert sorted(tree.subtree_ids()) == sorted(tree.node_by_id)
             assert tree_of(json.loads(json.dumps(tree.snapshot()))).checksum() == tree.checksum()
             page.receive(json.loads(json.dumps(program.news("z", page.number, "e"))))
-            assert not page.is_astray
+            assert not page.is_out_of_sync
     assert refusals["taken"] > MESSAGE_COUNT / 50
     assert refusals[BAD] > MESSAGE_COUNT / 50
 

@@ -435,9 +435,9 @@ def data(page: Page) -> Any:
 def test_a_page_with_a_different_tree_requests_the_whole_program(pair: PagePair) -> None:
     pair.ana.base.node_by_id[pair.find("F(1, 80)")].text = "F(9, 80)"  # whatever the cause
     pair.hear(pair.ana)
-    assert pair.ana.is_astray
+    assert pair.ana.is_out_of_sync
     pair.ana.receive(pair.program.news("a", -1, pair.ana.epoch))
-    assert not pair.ana.is_astray
+    assert not pair.ana.is_out_of_sync
     assert "SI|F(1, 80);" in pair.ana.lines
 
 

@@ -126,7 +126,7 @@ class World:
             sent_data = self._send_and_parse(
                 {"sent": [data_of_change(change) for change in page.pending_changes]}
             )
-            seen_number = -1 if page.is_astray else page.number
+            seen_number = -1 if page.is_out_of_sync else page.number
             self.schedule(
                 self._delay(self.rng),
                 self._reach,
@@ -178,7 +178,7 @@ class World:
             return
         page = self.pupils[name].page
         page.receive(news)
-        self.counts["astray"] += page.is_astray and page.epoch == self.program.epoch
+        self.counts["astray"] += page.is_out_of_sync and page.epoch == self.program.epoch
         if turn == self.turn[name]:
             self.turn[name] += 1
             self.schedule(self._asks_s, self.ask, name, self.turn[name])
@@ -218,7 +218,7 @@ class World:
                 self.submit(
                     self._send_and_parse({"": list(map(data_of_change, page.pending_changes))})[""]
                 )
-                seen_number = -1 if page.is_astray else page.number
+                seen_number = -1 if page.is_out_of_sync else page.number
                 page.receive(self._send_and_parse(self.program.news(name, seen_number, page.epoch)))
                 page.give_up()  # changes refused just now
 
@@ -267,7 +267,7 @@ class World:
         tree = self.program.tree
         for pupil in self.pupils.values():
             page = pupil.page
-            assert not page.pending_changes and not page.drafts and not page.is_astray
+            assert not page.pending_changes and not page.drafts and not page.is_out_of_sync
             assert page.base.checksum() == page.view.checksum() == tree.checksum()
             assert "\n".join(page.lines) == text_of(tree).rstrip("\n")
 

@@ -202,7 +202,7 @@ def _answer(state: State, text: str, carets: tuple[int, int] | None) -> Json:
         "ids": page.ids_of_lines(),
         "drafts": page.lines_of_drafts(),
         "pending": [data_of_change(change) for change in page.pending_changes[:MAX_CHANGES]],
-        "since": -1 if page.is_astray else page.number,
+        "since": -1 if page.is_out_of_sync else page.number,
         "epoch": page.epoch,
         "told": len(page.refusals),
         "why": page.refusals[-1][1] if page.refusals else "",

@@ -20,7 +20,7 @@ from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, UNKNOWN_SIGN, WORD, To
 from tiniscript.syntax.operators import AND, BINARY, COMPARISON, MINUS, NOT, OPEN, SIGNS, Postfix
 from tiniscript.syntax.reporter import Failed, Reporter
 
-_ENDS_VALUE = (")", "(", ";", NEWLINE, END)
+_SCAN_STOPS = (")", "(", ";", NEWLINE, END)
 
 
 class ExpressionParser:
@@ -308,7 +308,7 @@ class ExpressionParser:
         if tokens[k].kind != ";":
             return
         value = tokens[k + 1 + (tokens[k + 1].kind == "-")]
-        end_index = next(j for j in range(k + 1, len(tokens)) if tokens[j].kind in _ENDS_VALUE)
+        end_index = next(j for j in range(k + 1, len(tokens)) if tokens[j].kind in _SCAN_STOPS)
         if tokens[end_index].kind != ")" or not (value.kind is NUMBER or _is_name(value)):
             return
         cursor.i = end_index + 1

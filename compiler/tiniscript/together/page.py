@@ -108,7 +108,7 @@ class Page:
     change_count: int = 0  # number of own changes
     id_count: int = 0
     # Whether its tree differs from the computer's, so that it needs a full copy.
-    is_astray: bool = False
+    is_out_of_sync: bool = False
 
     def __post_init__(self) -> None:
         self.view = self.base
@@ -138,7 +138,7 @@ class Page:
             self.refusals[:],
             self.change_count,
             self.id_count,
-            self.is_astray,
+            self.is_out_of_sync,
         )
         copied_page.view, copied_page.lines, copied_page.caret, copied_page._shown_lines = (
             self.view,
@@ -518,7 +518,7 @@ class Page:
         """
         taken_changes = [taken_change_of(taken_change) for taken_change in news.get("changes", ())]
         is_whole = "whole" in news and (
-            self.is_astray or news["epoch"] != self.epoch or news["n"] > self.number
+            self.is_out_of_sync or news["epoch"] != self.epoch or news["n"] > self.number
         )
         is_new = is_whole or any(
             taken_change.number > self.number for taken_change in taken_changes
@@ -560,7 +560,7 @@ class Page:
         """Look whether the tree is the computer's; of news that come late nothing is known."""
         newest_number = int(news["n"])
         if newest_number >= self.number:
-            self.is_astray = newest_number > self.number or self.base.checksum() != news["sum"]
+            self.is_out_of_sync = newest_number > self.number or self.base.checksum() != news["sum"]
 
     def _decide(self, news: Json) -> list[Change]:
         """Forget the decided changes; return the refused ones."""

@@ -561,10 +561,10 @@ void judge_typed(uint64_t seed) {
     pause_ms = 0;
     look();
   }
-  const bool is_over = restart != old_restart;  // it has not waited for its line's end
+  const bool stopped_early = restart != old_restart;  // it has not waited for its line's end
   const bool ends_with_zero = start == kZeroStart && is_loose && draw.number_below(2) == 0;
   put(ends_with_zero ? 0 : static_cast<uint8_t>("\r\n"[draw.number_below(2)]), 0);
-  if (!is_over) {
+  if (!stopped_early) {
     const bool is_sure = is_silent || start == kZeroStart;
     const bool is_seen = law == Law::kStop || law == Law::kWaits;
     if (is_loose && is_sure && !is_seen) note("the judge does not see the stop");
