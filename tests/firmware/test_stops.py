@@ -11,9 +11,9 @@ from typing import Any
 
 import pytest
 
-from tests.firmware.test_hostile_client import Client
 from tests.machines.host_firmware import HostFirmware
 from tests.support.button_states import STATES, Table, save_typed, store_trim
+from tests.support.hostile_client import Client
 from tests.support.images import image_of
 from tests.support.pty_robot import drives_now
 from tests.support.robot_on_host import (

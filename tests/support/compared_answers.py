@@ -8,6 +8,7 @@ from typing import Any
 from tiniscript.link.connection import PendingRequest
 from tiniscript.link.requests import OK
 
+COMMON_COUNT = 20  # items before a difference that are shown
 RUN_FIELDS = ("run", "damaged", "dropped", "nonce", "reset", "count", "epoch")
 
 
@@ -29,8 +30,9 @@ def without_counts(values: Any, *but: str) -> object:
 
 
 def first_difference(actual: Sequence[object], expected_items: Sequence[object]) -> str:
-    """Return the beginning that both have in common, and how each goes on after it."""
+    """Return the last items that both have in common, and how each goes on after them."""
     alike = 0
     while actual[alike : alike + 1] == expected_items[alike : alike + 1]:
         alike += 1
-    return f"{actual[:alike]}\n{actual[alike:][:4]}\nnot\n{expected_items[alike:][:4]}"
+    common_items = actual[max(0, alike - COMMON_COUNT) : alike]
+    return f"{common_items}\n{actual[alike:][:4]}\nnot\n{expected_items[alike:][:4]}"
